@@ -1,0 +1,65 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "luxel/enclosures.h"
+#include "luxel/exchange_matrix.h"
+#include "luxel/transport_operator.h"
+
+namespace luxel {
+
+/// How far the rows of an operator are from what they should be.
+struct RowSumError {
+  double max = 0;  ///< largest |s_i + open_i + back_i - 1|
+  double rms = 0;  ///< area-weighted root mean square
+};
+
+/// Symmetric scaling of a closed enclosure's rows to 1, and how much it changed.
+struct ClosureReport {
+  RowSumError before;             ///< raw
+  RowSumError after;              ///< of the operator as returned
+  double largest_correction = 0;  ///< largest |factor - 1| that any entry was multiplied by
+  bool applied = false;           ///< false for open scenes: their missing share is sky
+  int iterations = 0;
+};
+
+/// F from stored exchange areas. Symmetric; has entries().
+class DenseOperator : public TransportOperator {
+ public:
+  /// Takes the exchange areas of patches with these areas as they are, with a zero diagonal.
+  DenseOperator(ExchangeMatrix exchange_areas, std::vector<double> areas);
+  /// With diagonal exchange areas [m2], N numbers.
+  DenseOperator(ExchangeMatrix exchange_areas, std::vector<double> areas, std::vector<double> diagonal);
+
+  int size() const override { return exchange_.size(); }
+  void apply(const double* x, double* y, int columns) const override;
+  std::span<const double> row_sums() const override { return row_sums_; }
+  std::span<const double> areas() const override { return areas_; }
+  bool symmetric() const override { return true; }
+  std::size_t bytes() const override;
+  std::string_view kind() const override { return "dense"; }
+  const ExchangeMatrix* entries() const override { return &exchange_; }
+  std::span<const double> diagonal() const override { return diagonal_; }
+
+ private:
+  ExchangeMatrix exchange_;
+  std::vector<double> areas_;
+  std::vector<double> diagonal_;
+  std::vector<double> row_sums_;
+};
+
+/// A dense operator and what closing its rows did.
+struct ClosedOperator {
+  std::unique_ptr<DenseOperator> transport;
+  ClosureReport closure;
+};
+
+/// Raw exchange areas to an operator: in every closed enclosure the rows are scaled to sum to 1 by G_ij <-
+/// d_i d_j G_ij (Newton on log d, conjugate gradients inside), which keeps reciprocity exact; the rounding of
+/// the stored entries goes to the diagonal, so that closure holds to 1e-12. Open enclosures are left as they
+/// are.
+ClosedOperator close_rows(ExchangeMatrix exchange_areas, std::vector<double> areas,
+                          const Enclosures& enclosures, const Progress& progress = {});
+
+}  // namespace luxel
