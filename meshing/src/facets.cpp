@@ -38,13 +38,13 @@ Loops welded_loops(const Scene& scene, const WeldedVertices& welded) {
 }
 
 /// The sides of each face that no earlier face with the same corners has taken.
-std::vector<char> free_sides(const Scene& scene, const Loops& loops, const std::vector<char>& has_area,
+std::vector<char> free_sides(const Scene& scene, const Loops& loops, const std::vector<char>& with_area,
                              std::vector<int>& duplicates) {
   const RepeatedLoops repeated = find_repeated(loops);
   std::vector<char> taken(scene.face_count(), no_side);  // of the first loop, in its own orientation
   std::vector<char> sides(scene.face_count(), no_side);
   for (int f = 0; f < scene.face_count(); ++f) {
-    if (!has_area[f]) continue;
+    if (!with_area[f]) continue;
     char& others = taken[repeated.first[f]];
     const Side own = repeated.reversed[f] ? back_side : front_side;
     const bool two_sided = scene.finishes[scene.face_finishes[f]].two_sided;
@@ -98,8 +98,7 @@ Facets make_facets(const Scene& scene) {
   const std::vector<char> sides = free_sides(scene, loops, with_area, duplicates);
 
   const auto append = [&](std::span<const int> loop, int face) {
-    facets.corners.insert(facets.corners.end(), loop.begin(), loop.end());
-    facets.offsets.push_back(static_cast<int>(facets.corners.size()));
+    facets.loops.append(loop);
     facets.faces.push_back(face);
     facets.front.push_back((sides[face] & front_side) != 0);
     facets.back.push_back((sides[face] & back_side) != 0);

@@ -5,18 +5,18 @@
 #include <vector>
 
 #include "luxel/scene.h"
+#include "repeated_loops.h"
 
 namespace luxel {
 
 /// The scene's faces as flat loops over welded vertices. A face that is flat is one facet, however many
 /// corners it has; any other is several triangles. Faces without area and repeated faces are gone.
 struct Facets {
-  std::vector<Vec3> vertices;   ///< [m]
-  std::vector<int> offsets{0};  ///< facet i has the corners [offsets[i], offsets[i + 1])
-  std::vector<int> corners;     ///< indices into `vertices`, counter-clockwise seen from the front
-  std::vector<int> faces;       ///< the scene's face that the facet is (part of), ascending
-  std::vector<char> front;      ///< whether the front radiates
-  std::vector<char> back;       ///< whether the back does: two-sided
+  std::vector<Vec3> vertices;  ///< [m]
+  Loops loops;                 ///< one per facet; indices into `vertices`, counter-clockwise from the front
+  std::vector<int> faces;      ///< the scene's face that the facet is (part of), ascending
+  std::vector<char> front;     ///< whether the front radiates
+  std::vector<char> back;      ///< whether the back does: two-sided
   int welded_vertices = 0;
   int degenerate_faces = 0;
   int duplicate_faces = 0;
@@ -24,9 +24,7 @@ struct Facets {
   std::vector<std::string> warnings;
 
   int size() const { return static_cast<int>(faces.size()); }
-  std::span<const int> loop(int facet) const {
-    return std::span(corners).subspan(offsets[facet], offsets[facet + 1] - offsets[facet]);
-  }
+  std::span<const int> loop(int facet) const { return loops[facet]; }
   /// The positions of a facet's corners.
   std::vector<Vec3> points(int facet) const;
 };
