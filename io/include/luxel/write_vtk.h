@@ -23,7 +23,7 @@ struct VtkOptions {
 /// Writes the solved patches for ParaView: one cell per patch in patch order, points are the Gouraud
 /// vertices. Arrays, units and field data: docs/outputs.md. The extension chooses: .vtp polygons, .vtu
 /// unstructured grid. Numbers in float64, appended raw with lz4. Whole or not at all (OutputFile). Cost: 0.5
-/// CPU seconds and 250 MB of memory for a million patches.
+/// CPU seconds and 130 MB of memory for a million patches.
 /// @throws InputError where the file cannot be written, has another extension, or the module luxel_vtk is
 /// missing
 /// @throws std::invalid_argument unless the fields have one row per patch and three columns
