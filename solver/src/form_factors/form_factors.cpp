@@ -14,6 +14,7 @@ FormFactors form_factors(const PatchMesh& mesh, const FormFactorOptions& options
   const ClusterTree tree = cluster_tree(mesh);
   FormFactors result{ExchangeMatrix(mesh.size(), options.precision), {}};
   fill_unoccluded(tree, options.accuracy, result.exchange_areas, result.report, progress);
+  subtract_hidden(mesh, tree, options, result.exchange_areas, result.report, progress);
   return result;
 }
 

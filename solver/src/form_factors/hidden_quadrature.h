@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "form_factors/hidden_kernel.h"
+#include "form_factors/polygon.h"
+
+namespace luxel {
+
+/// Quadrature points of a convex polygon with area weights: exact for polynomials of degree 1, 2 or 3, 4, 6 for
+/// order 1 to 4 (triangles: 1, 3, 6, 12 points; quads: order^2; others: cut into these).
+void add_points(const Polygon& cell, int order, OuterPoints& points);
+
+/// An integral over a cell and what it may be wrong by.
+struct HiddenIntegral {
+  double value = 0;
+  double error = 0;
+  std::int64_t points = 0;
+
+  HiddenIntegral& operator+=(const HiddenIntegral& other);
+};
+
+/// Integrals of hidden_shares() over cells of the outer patch of one pair.
+class HiddenQuadrature {
+ public:
+  /// @param inner  the inner polygon, in front of all cells
+  HiddenQuadrature(const Polygon& inner, const Vec3& normal, const Shadows& shadows,
+                   HiddenWorkspace& workspace);
+
+  /// Over cells within which the integrand is smooth: the order of each from its size against its distance
+  /// from what makes the integrand vary, cut smaller where no order suffices.
+  /// @param unhidden   of the whole patch, bounds the integral
+  /// @param area       of the whole patch
+  /// @param tolerance  of the whole patch's integral
+  HiddenIntegral smooth(std::span<const Polygon> cells, double unhidden, double area, double tolerance);
+
+  /// Over cells that may hold kinks: two rules of equal degree side by side, halved where they disagree.
+  HiddenIntegral adaptive(std::span<const Polygon> cells, double area, double tolerance);
+
+ private:
+  double distance_to_edges(const Vec3& point) const;
+  void place(const Polygon& cell, double unhidden, double area, double tolerance, int depth);
+
+  const Polygon& inner_;
+  Vec3 normal_;
+  const Shadows& shadows_;
+  HiddenWorkspace& workspace_;
+  OuterPoints points_;
+  std::vector<double> shares_;
+  double error_ = 0;
+};
+
+}  // namespace luxel
