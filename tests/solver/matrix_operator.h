@@ -22,7 +22,8 @@ class MatrixOperator : public TransportOperator {
     }
     Eigen::MatrixXd rows(areas.size(), areas.size());
     for (int i = 0; i < areas.size(); ++i) {
-      for (int j = 0; j < areas.size(); ++j) rows(i, j) = (i == j ? exchange(i, i) : entries(i, j)) / areas[i];
+      for (int j = 0; j < areas.size(); ++j)
+        rows(i, j) = (i == j ? exchange(i, i) : entries(i, j)) / areas[i];
     }
     MatrixOperator result(rows, areas);
     result.entries_ = std::move(entries);
@@ -61,8 +62,8 @@ class MatrixOperator : public TransportOperator {
   std::vector<double> diagonal_;
 };
 
-/// A cube of six patches with side 1, in the order floor, ceiling, four walls. Source of the two factors: Howell's
-/// catalogue C-11 and C-14.
+/// A cube of six patches with side 1, in the order floor, ceiling, four walls. Source of the two factors:
+/// Howell's catalogue C-11 and C-14.
 inline MatrixOperator cube6() {
   constexpr double opposite = 0.199824895698387, adjacent = 0.200043776075403;
   Eigen::MatrixXd f = Eigen::MatrixXd::Constant(6, 6, adjacent);
@@ -76,7 +77,8 @@ inline MatrixOperator sphere(const Eigen::VectorXd& areas, Precision precision =
   return MatrixOperator::from_exchange_areas(areas * areas.transpose() / areas.sum(), areas, precision);
 }
 
-/// A closed enclosure of n patches with random couplings, areas over two orders, rows that sum to 1 to rounding.
+/// A closed enclosure of n patches with random couplings, areas over two orders, rows that sum to 1 to
+/// rounding.
 inline MatrixOperator random_enclosure(int n, unsigned seed, Precision precision = Precision::float64) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> uniform(0, 1);

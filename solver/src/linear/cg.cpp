@@ -12,8 +12,8 @@ namespace {
 // More Lanczos coefficients than these add nothing to an estimate of the condition number.
 constexpr std::size_t lanczos_steps = 100;
 
-/// Condition number of the tridiagonal matrix that conjugate gradients with these step lengths have built (Golub
-/// and Van Loan 2013, 11.3.5); its eigenvalues lie between those of the system.
+/// Condition number of the tridiagonal matrix that conjugate gradients with these step lengths have built
+/// (Golub and Van Loan 2013, 11.3.5); its eigenvalues lie between those of the system.
 double condition_of_lanczos(const std::vector<double>& alpha, const std::vector<double>& beta) {
   const Eigen::Index k = static_cast<Eigen::Index>(alpha.size());
   if (k == 0) return 0;
@@ -30,9 +30,9 @@ double condition_of_lanczos(const std::vector<double>& alpha, const std::vector<
 
 }  // namespace
 
-// I - K is self-adjoint in the inner product <x, y> = sum_i A_i / rho_i x_i y_i over the patches with rho > 0, where
-// all the vectors below live. That is the same as the symmetric system A / rho - A F with the diagonal
-// preconditioner rho / A, and r is the residual of B itself.
+// I - K is self-adjoint in the inner product <x, y> = sum_i A_i / rho_i x_i y_i over the patches with rho >
+// 0, where all the vectors below live. That is the same as the symmetric system A / rho - A F with the
+// diagonal preconditioner rho / A, and r is the residual of B itself.
 PatchField cg(const RadiositySystem& system, PatchField radiosity, IterationWatch& watch) {
   const Eigen::Index m = system.columns();
   const auto& rho = system.reflectance();

@@ -10,8 +10,8 @@ namespace luxel {
 
 namespace {
 
-/// I - D A F D^-1 .. of one reflectance, D = sqrt(A / rho): symmetric, with a unit diagonal but for F_ii, over the
-/// patches that reflect.
+/// I - D A F D^-1 .. of one reflectance, D = sqrt(A / rho): symmetric, with a unit diagonal but for F_ii,
+/// over the patches that reflect.
 struct SymmetricForm {
   std::vector<int> patches;  ///< with rho > 0
   Eigen::VectorXd scale;     ///< sqrt(A / rho) of these
@@ -33,21 +33,23 @@ SymmetricForm symmetric_form(const RadiositySystem& system, Eigen::Index column)
 template <class Real>
 std::shared_ptr<CholeskyFactor<Real>> factor(const RadiositySystem& system, const SymmetricForm& form) {
   const ExchangeRows exchange(system.transport());
-  auto result = std::make_shared<CholeskyFactor<Real>>(static_cast<int>(form.patches.size()), [&](int a, Real* row) {
-    const int i = form.patches[a];
-    for (int b = 0; b <= a; ++b) {
-      const double g = exchange(i, form.patches[b]) / (form.scale[a] * form.scale[b]);
-      row[b] = static_cast<Real>((a == b ? 1 : 0) - g);
-    }
-  });
+  auto result =
+      std::make_shared<CholeskyFactor<Real>>(static_cast<int>(form.patches.size()), [&](int a, Real* row) {
+        const int i = form.patches[a];
+        for (int b = 0; b <= a; ++b) {
+          const double g = exchange(i, form.patches[b]) / (form.scale[a] * form.scale[b]);
+          row[b] = static_cast<Real>((a == b ? 1 : 0) - g);
+        }
+      });
   return result->factor() ? result : nullptr;
 }
 
 /// dB of the columns of one group.
 template <class Real>
-void correct(const SymmetricForm& form, const CholeskyFactor<Real>& factor, const std::vector<Eigen::Index>& columns,
-             const PatchField& residual, PatchField& correction) {
-  const Eigen::Index n = static_cast<Eigen::Index>(form.patches.size()), m = static_cast<Eigen::Index>(columns.size());
+void correct(const SymmetricForm& form, const CholeskyFactor<Real>& factor,
+             const std::vector<Eigen::Index>& columns, const PatchField& residual, PatchField& correction) {
+  const Eigen::Index n = static_cast<Eigen::Index>(form.patches.size()),
+                     m = static_cast<Eigen::Index>(columns.size());
   typename CholeskyFactor<Real>::Block x(n, m);
   for (Eigen::Index k = 0; k < m; ++k) {
     Eigen::VectorXd scaled(n);

@@ -9,8 +9,8 @@
 
 namespace luxel {
 
-/// Rows that one task takes: large enough to hide a task's start (about 1 us), small enough for the cache. The
-/// partition does not depend on the number of threads, so that sums over it do not either.
+/// Rows that one task takes: large enough to hide a task's start (about 1 us), small enough for the cache.
+/// The partition does not depend on the number of threads, so that sums over it do not either.
 inline constexpr int rows_per_task = 2048;
 
 /// Calls body(first, count) for consecutive blocks of rows, in parallel.

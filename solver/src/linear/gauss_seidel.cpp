@@ -8,8 +8,9 @@ namespace luxel {
 
 namespace {
 
-/// Sweeps that read each stored exchange area once: row i gives the dot with the patches before i, and in the same
-/// breath adds what B_i sends to them, which the next sweep needs. Vectors are column-major: one channel at a time.
+/// Sweeps that read each stored exchange area once: row i gives the dot with the patches before i, and in the
+/// same breath adds what B_i sends to them, which the next sweep needs. Vectors are column-major: one channel
+/// at a time.
 class Sweeps {
  public:
   Sweeps(const RadiositySystem& system, const PatchField& radiosity)
@@ -49,8 +50,8 @@ class Sweeps {
       for (Eigen::Index c = 0; c < radiosity_.cols(); ++c) {
         const double rho = system_.reflectance()(i, c);
         const double arriving = dot_row(row, radiosity_.col(c).data(), i) + from_later(i, c);
-        radiosity_(i, c) = (system_.emission()(i, c) + rho * arriving / area) /
-                           (1 - rho * exchange_.diagonal(i) / area);
+        radiosity_(i, c) =
+            (system_.emission()(i, c) + rho * arriving / area) / (1 - rho * exchange_.diagonal(i) / area);
         add_scaled_row(row, radiosity_(i, c), from_later_.col(c).data(), i);
       }
     });

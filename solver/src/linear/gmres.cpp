@@ -14,8 +14,8 @@ constexpr int orthogonalisations = 2;
 
 /// The least-squares problem of one column: H y = ||r|| e_1 with Givens rotations, as it grows.
 struct Hessenberg {
-  Eigen::MatrixXd r;       ///< upper triangle after the rotations
-  Eigen::VectorXd rhs;     ///< its last entry is the residual's norm
+  Eigen::MatrixXd r;    ///< upper triangle after the rotations
+  Eigen::VectorXd rhs;  ///< its last entry is the residual's norm
   std::vector<Eigen::JacobiRotation<double>> rotations;
 
   Hessenberg(int restart, double norm) : r(Eigen::MatrixXd::Zero(restart + 1, restart)), rhs(restart + 1) {
@@ -51,8 +51,8 @@ Eigen::RowVectorXd inverse_or_zero(const Eigen::RowVectorXd& x) {
 
 }  // namespace
 
-// All columns build their own directions in step, in the area-weighted inner product, so that the norm that falls is
-// the one of the stopping rule.
+// All columns build their own directions in step, in the area-weighted inner product, so that the norm that
+// falls is the one of the stopping rule.
 PatchField gmres(const RadiositySystem& system, PatchField radiosity, int restart, IterationWatch& watch) {
   const Eigen::Index n = system.size(), m = system.columns();
   const auto areas = system.areas();

@@ -10,8 +10,8 @@ namespace luxel {
 
 namespace {
 
-// Light that is reflected with rho s <= 1 never gains in any norm; operators with a few rows above 1 may gain for
-// two or three bounces before they settle.
+// Light that is reflected with rho s <= 1 never gains in any norm; operators with a few rows above 1 may gain
+// for two or three bounces before they settle.
 constexpr int rises_of_divergence = 5;
 
 // A residual this far above the best one has left it for good; conjugate gradients oscillate by less.
@@ -33,26 +33,26 @@ double IterationWatch::bound_of(const PatchField& residual, const PatchField& ra
   return bound_ ? bound_->relative(residual, radiosity) : std::numeric_limits<double>::infinity();
 }
 
-bool IterationWatch::holds(const Iteration& iteration) const {
-  if (bound_ && options_->error) return iteration.error_bound <= *options_->error;
-  return iteration.relative_residual <= options_->tolerance;
+bool IterationWatch::holds(const Iteration& iteration, double margin) const {
+  if (bound_ && options_->error) return iteration.error_bound <= margin * *options_->error;
+  return iteration.relative_residual <= margin * options_->tolerance;
 }
 
 bool IterationWatch::satisfied(const PatchField& residual, const PatchField& radiosity) const {
   Iteration iteration;
   iteration.relative_residual = system_->relative_norms(residual).maxCoeff();
   iteration.error_bound = bound_of(residual, radiosity);
-  return holds(iteration);
+  return holds(iteration, 1);
 }
 
 double IterationWatch::target() const {
-  if (!bound_ || !options_->error || report_->history.empty()) return options_->tolerance;
+  if (!bound_ || !options_->error || report_->history.empty()) return margin_ * options_->tolerance;
   const Iteration* last = nullptr;
   for (const Iteration& past : report_->history) {
     if (std::isfinite(past.error_bound) && past.error_bound > 0) last = &past;
   }
   // the bound is nearly proportional to the residual; half of it, so that one more cycle suffices
-  return last ? 0.5 * last->relative_residual * *options_->error / last->error_bound : 0;
+  return last ? 0.5 * margin_ * last->relative_residual * *options_->error / last->error_bound : 0;
 }
 
 bool IterationWatch::start(const PatchField& residual, const PatchField& radiosity) {
@@ -61,9 +61,10 @@ bool IterationWatch::start(const PatchField& residual, const PatchField& radiosi
   iteration.relative_residual = system_->relative_norms(residual).maxCoeff();
   iteration.error_bound = bound_of(residual, radiosity);
   iteration.radiosity = &radiosity;
-  if (iteration.number > 0) return !holds(iteration);
+  if (iteration.number > 0) return !holds(iteration, margin_);
   if (!record(iteration)) return false;
-  // One bounce at least: light from a tiny emitter may be below any tolerance relative to ||E|| and is not lost.
+  // One bounce at least: light from a tiny emitter may be below any tolerance relative to ||E|| and is not
+  // lost.
   return residual.cwiseAbs().maxCoeff() > 0 || stop(Stopped::converged, {});
 }
 
@@ -102,7 +103,7 @@ bool IterationWatch::progress(const Iteration& iteration) {
   if (!std::isfinite(residual)) {
     return stop(Stopped::diverged, "the residual is not a number" + at);
   }
-  if (holds(iteration)) return stop(Stopped::converged, {});
+  if (holds(iteration, margin_)) return stop(Stopped::converged, {});
   rises_ = residual > previous_ ? rises_ + 1 : 0;
   previous_ = residual;
   if (residual < best_) {
@@ -119,8 +120,8 @@ bool IterationWatch::progress(const Iteration& iteration) {
   const bool above_rounding = residual > 100 * floor;
   const bool keeps_rising = expects_decrease_ && rises_ >= rises_of_divergence && above_rounding;
   if (keeps_rising || residual > growth_of_divergence * best_) {
-    const double gain = system_->reflectance().cwiseProduct(system_->row_sums().replicate(1, system_->columns()))
-                            .maxCoeff();
+    const double gain =
+        system_->reflectance().cwiseProduct(system_->row_sums().replicate(1, system_->columns())).maxCoeff();
     std::ostringstream why;
     why << "diverges: the residual has grown" << at;
     if (gain > 1) why << "; a row of the operator times its reflectance reaches " << gain;
@@ -134,7 +135,8 @@ bool IterationWatch::progress(const Iteration& iteration) {
     return stop(Stopped::stagnated, why.str());
   }
   if (iteration.number >= options_->max_iterations) {
-    return stop(Stopped::iterations, "not converged within " + std::to_string(iteration.number) + " iterations");
+    return stop(Stopped::iterations,
+                "not converged within " + std::to_string(iteration.number) + " iterations");
   }
   return true;
 }

@@ -18,7 +18,8 @@ std::shared_ptr<LuFactor<Real>> factor(const RadiositySystem& system, const std:
   const ExchangeRows exchange(system.transport());
   const int n = static_cast<int>(patches.size());
   Eigen::VectorXd reflected(n);  // rho_i / A_i
-  for (int a = 0; a < n; ++a) reflected[a] = system.reflectance()(patches[a], column) / system.areas()[patches[a]];
+  for (int a = 0; a < n; ++a)
+    reflected[a] = system.reflectance()(patches[a], column) / system.areas()[patches[a]];
   auto result = std::make_shared<LuFactor<Real>>(n);
   tbb::parallel_for(0, n, [&](int a) {
     Real* above = result->column(a);

@@ -4,13 +4,16 @@
 
 namespace luxel {
 
-// Every method takes the system, a B to start from (N x m, equal to E where rho = 0), and the watch that it reports
-// each iteration to; it returns the B at which the watch said stop. The residual that it reports may come from a
-// recurrence: solve() measures it anew and calls again with the B returned if rounding has misled it.
+// Every method takes the system, a B to start from (N x m, equal to E where rho = 0), and the watch that it
+// reports each iteration to; it returns the B at which the watch said stop. The residual that it reports may
+// come from a recurrence: solve() measures it anew and calls again with the B returned if rounding has misled
+// it.
 //
-// To add one more: a file beside these, a line here, a value in Method, a line in method.cpp and in solve.cpp.
+// To add one more: a file beside these, a line here, a value in Method, a line in method.cpp and in
+// solve.cpp.
 
-/// B <- E + K B: each iteration adds one bounce of light. Residual 1 apply an iteration, falls by max rho s or better.
+/// B <- E + K B: each iteration adds one bounce of light. Residual 1 apply an iteration, falls by max rho s
+/// or better.
 PatchField neumann(const RadiositySystem& system, PatchField radiosity, IterationWatch& watch);
 
 /// Exactly `bounces` bounces from B = E.

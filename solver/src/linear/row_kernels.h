@@ -13,7 +13,8 @@ double dot_row(const Real* row, const double* x, int count) {
   double sums[row_lanes] = {};
   int j = 0;
   for (; j + row_lanes <= count; j += row_lanes) {
-    for (int lane = 0; lane < row_lanes; ++lane) sums[lane] += static_cast<double>(row[j + lane]) * x[j + lane];
+    for (int lane = 0; lane < row_lanes; ++lane)
+      sums[lane] += static_cast<double>(row[j + lane]) * x[j + lane];
   }
   double sum = ((sums[0] + sums[1]) + (sums[2] + sums[3])) + ((sums[4] + sums[5]) + (sums[6] + sums[7]));
   for (; j < count; ++j) sum += static_cast<double>(row[j]) * x[j];

@@ -10,11 +10,12 @@ namespace luxel {
 
 namespace {
 
-// A residual from a recurrence differs from the true one by rounding only, which one or two fresh starts repair.
+// A residual from a recurrence differs from the true one by rounding only, which one or two fresh starts
+// repair.
 constexpr int fresh_starts = 4;
 
-// Right-hand sides of one reflectance from which one factorisation is cheaper than conjugate gradients for each, and
-// the size up to which its cubic cost stays below that (measured: docs/decisions/0009-solvers.md).
+// Right-hand sides of one reflectance from which one factorisation is cheaper than conjugate gradients for
+// each, and the size up to which its cubic cost stays below that (measured: docs/decisions/0009-solvers.md).
 constexpr Eigen::Index columns_for_cholesky = 10;
 constexpr Eigen::Index size_for_cholesky = 16'000;
 
@@ -56,8 +57,9 @@ void check_method(Method method, const TransportOperator& transport, const Solve
   const std::string word(name(method));
   const bool on_symmetric = method == Method::cg || method == Method::cholesky;
   require(!on_symmetric || transport.symmetric(), word + " needs a symmetric operator; gmres does not");
-  const bool on_entries = method == Method::cholesky || method == Method::lu || method == Method::gauss_seidel ||
-                          method == Method::symmetric_gauss_seidel || method == Method::southwell;
+  const bool on_entries = method == Method::cholesky || method == Method::lu ||
+                          method == Method::gauss_seidel || method == Method::symmetric_gauss_seidel ||
+                          method == Method::southwell;
   require(!on_entries || transport.entries(), word + " needs an operator with entries, such as dense");
   require(!options.bounces || method == Method::neumann, "bounces are for neumann, not for " + word);
 }
@@ -65,23 +67,30 @@ void check_method(Method method, const TransportOperator& transport, const Solve
 PatchField run(const RadiositySystem& system, PatchField start, const SolveOptions& options, Method method,
                IterationWatch& watch) {
   switch (method) {
-    case Method::cholesky: return cholesky(system, std::move(start), watch);
-    case Method::lu: return lu(system, std::move(start), watch);
-    case Method::gmres: return gmres(system, std::move(start), options.restart, watch);
+    case Method::cholesky:
+      return cholesky(system, std::move(start), watch);
+    case Method::lu:
+      return lu(system, std::move(start), watch);
+    case Method::gmres:
+      return gmres(system, std::move(start), options.restart, watch);
     case Method::neumann:
       return options.bounces ? neumann_bounces(system, *options.bounces, watch)
                              : neumann(system, std::move(start), watch);
-    case Method::gauss_seidel: return gauss_seidel(system, std::move(start), false, watch);
-    case Method::symmetric_gauss_seidel: return gauss_seidel(system, std::move(start), true, watch);
-    case Method::southwell: return southwell(system, std::move(start), watch);
-    default: return cg(system, std::move(start), watch);
+    case Method::gauss_seidel:
+      return gauss_seidel(system, std::move(start), false, watch);
+    case Method::symmetric_gauss_seidel:
+      return gauss_seidel(system, std::move(start), true, watch);
+    case Method::southwell:
+      return southwell(system, std::move(start), watch);
+    default:
+      return cg(system, std::move(start), watch);
   }
 }
 
 }  // namespace
 
-RadiositySolution solve(const TransportOperator& transport, const PatchField& reflectance, const PatchField& emission,
-                        const SolveOptions& options) {
+RadiositySolution solve(const TransportOperator& transport, const PatchField& reflectance,
+                        const PatchField& emission, const SolveOptions& options) {
   check(transport, reflectance, emission, options);
   const RadiositySystem system(transport, reflectance, emission);
   const Method method = options.method == Method::automatic ? choose(system, options) : options.method;
@@ -104,7 +113,6 @@ RadiositySolution solve(const TransportOperator& transport, const PatchField& re
   if (bound.worth_sharpening()) bound.sharpen();
   IterationWatch watch(system, options, &bound, report);
   PatchField residual;
-  double previous = std::numeric_limits<double>::infinity();
   for (int start = 0; start <= fresh_starts; ++start) {
     solution.radiosity = run(system, std::move(solution.radiosity), options, method, watch);
     solution.irradiance = system.apply(solution.radiosity);
@@ -113,19 +121,19 @@ RadiositySolution solve(const TransportOperator& transport, const PatchField& re
     report.error_bound = bound.relative(residual, solution.radiosity);
     report.converged = watch.satisfied(residual, solution.radiosity);
     if (report.converged || report.stopped != Stopped::converged) break;
-    if (!(report.relative_residual < 0.5 * previous)) {
-      watch.stop(Stopped::stagnated, "the residual measured anew stays at the rounding of float64");
-      break;
-    }
-    previous = report.relative_residual;
+    watch.tighten();
+  }
+  if (!report.converged && report.stopped == Stopped::converged) {
+    watch.stop(Stopped::stagnated, "the residual measured anew stays above what was asked, at rounding");
   }
   if (report.converged && report.stopped != Stopped::bounces && report.stopped != Stopped::caller) {
     watch.stop(Stopped::converged, {});
   }
   if (!bound.exists()) {
     if (!report.message.empty()) report.message += "; ";
-    report.message += "no error bound: some row of the operator times its reflectance reaches 1, and no test "
-                      "vector proves the series to converge";
+    report.message +=
+        "no error bound: some row of the operator times its reflectance reaches 1, and no test "
+        "vector proves the series to converge";
   }
   return solution;
 }

@@ -28,16 +28,16 @@ class Square {
   std::vector<Real> values_;
 };
 
-/// B and the part of it that has not been shot yet, column-major.
+/// Light that has been shot, and what waits to be; column-major.
 struct Light {
-  Eigen::MatrixXd radiosity;
-  Eigen::MatrixXd unshot;
+  Eigen::MatrixXd shot;    ///< the B of the system, whose residual is:
+  Eigen::MatrixXd unshot;  ///< E - B + K B
 };
 
 /// The patch with the most unshot power, sum over channels of A_i |dB_i| [W]; -1 where all is shot.
 int brightest(const Light& light, const Eigen::VectorXd& areas) {
-  Eigen::VectorXd power = light.unshot.cwiseAbs().rowwise().sum().cwiseProduct(areas);
-  const double most = power.size() > 0 ? power.maxCoeff() : 0;
+  const Eigen::VectorXd power = light.unshot.cwiseAbs().rowwise().sum().cwiseProduct(areas);
+  const double most = power.maxCoeff();
   if (!(most > 0)) return -1;
   return static_cast<int>(std::find(power.data(), power.data() + power.size(), most) - power.data());
 }
@@ -45,23 +45,17 @@ int brightest(const Light& light, const Eigen::VectorXd& areas) {
 /// Shoots the unshot light of patch i in all channels. `gain` is rho_j / A_j.
 template <class Real>
 void shoot(int i, const Square<Real>& exchange, double diagonal, const Eigen::MatrixXd& gain, Light& light) {
-  const Eigen::Index n = light.unshot.rows();
   const Real* row = exchange.row(i);
   for (Eigen::Index c = 0; c < light.unshot.cols(); ++c) {
-    const double shot = light.unshot(i, c);
-    if (shot == 0) continue;
-    light.unshot(i, c) = 0;
-    double* radiosity = light.radiosity.col(c).data();
+    const double power = light.unshot(i, c);
+    if (power == 0) continue;
+    light.shot(i, c) += power;
+    light.unshot(i, c) = power * gain(i, c) * diagonal;
     double* unshot = light.unshot.col(c).data();
     const double* reflected = gain.col(c).data();
-    for (Eigen::Index j = 0; j < n; ++j) {
-      const double received = shot * reflected[j] * static_cast<double>(row[j]);
-      radiosity[j] += received;
-      unshot[j] += received;
+    for (Eigen::Index j = 0; j < light.unshot.rows(); ++j) {
+      unshot[j] += power * reflected[j] * static_cast<double>(row[j]);
     }
-    const double itself = shot * reflected[i] * diagonal;
-    radiosity[i] += itself;
-    unshot[i] += itself;
   }
 }
 
@@ -73,16 +67,15 @@ PatchField shoot_all(const RadiositySystem& system, PatchField radiosity, Iterat
   const ExchangeRows entries(system.transport());
   const Eigen::VectorXd areas = system.areas();
   const Eigen::MatrixXd gain = areas.cwiseInverse().asDiagonal() * Eigen::MatrixXd(system.reflectance());
-  // what is shot solves the system up to the unshot light, which is its residual; B counts that light as arrived
-  Light light{radiosity + residual, residual};
   do {
+    Light light{radiosity, residual};
     for (Eigen::Index shot = 0; shot < system.size(); ++shot) {
       const int i = brightest(light, areas);
       if (i < 0) break;
       shoot(i, exchange, entries.diagonal(i), gain, light);
     }
-    radiosity = light.radiosity;
-    residual = system.residual(radiosity);
+    radiosity = light.shot;
+    residual = system.residual(radiosity);  // sheds the rounding of so many small additions
   } while (watch.next(residual, radiosity));
   return radiosity;
 }

@@ -7,11 +7,12 @@
 
 namespace luxel {
 
-/// The system B = E + K B, K = rho F, for m channels: what every method is given. It refers to its parts, which
-/// must outlive it.
+/// The system B = E + K B, K = rho F, for m channels: what every method is given. It refers to its parts,
+/// which must outlive it.
 class RadiositySystem {
  public:
-  RadiositySystem(const TransportOperator& transport, const PatchField& reflectance, const PatchField& emission);
+  RadiositySystem(const TransportOperator& transport, const PatchField& reflectance,
+                  const PatchField& emission);
 
   const TransportOperator& transport() const { return *transport_; }
   const PatchField& reflectance() const { return *reflectance_; }

@@ -7,9 +7,9 @@
 
 namespace luxel {
 
-/// L of a symmetric positive definite matrix M = L L^T, in panels of columns: panel k holds the rows from its own
-/// first column on, row-major and contiguous, so that every tile of it is one block of memory. Memory: n^2 / 2 numbers
-/// plus n panel_width / 2, factored in place. The same bits for any number of threads.
+/// L of a symmetric positive definite matrix M = L L^T, in panels of columns: panel k holds the rows from its
+/// own first column on, row-major and contiguous, so that every tile of it is one block of memory. Memory:
+/// n^2 / 2 numbers plus n panel_width / 2, factored in place. The same bits for any number of threads.
 template <class Real>
 class CholeskyFactor {
  public:

@@ -11,8 +11,8 @@ namespace luxel {
 
 namespace {
 
-// Columns of a panel: the panel's own factorisation, which nobody else can share, is n panel_width / (4 n / 3) of the
-// work, and the updates' inner length wants 128 or more.
+// Columns of a panel: the panel's own factorisation, which nobody else can share, is n panel_width / (4 n /
+// 3) of the work, and the updates' inner length wants 128 or more.
 constexpr int panel_width = 128;
 
 // Rows of X that one task updates in a solve.
@@ -31,7 +31,8 @@ void for_row_tiles(int begin, int end, const Body& body) {
 template <class Real>
 LuFactor<Real>::LuFactor(int size) : size_(size), pivots_(size) {
   panels_.resize((size + panel_width - 1) / panel_width);
-  for (int k = 0; k < panel_count(); ++k) panels_[k].reset(new Real[static_cast<std::size_t>(size) * width(k)]);
+  for (int k = 0; k < panel_count(); ++k)
+    panels_[k].reset(new Real[static_cast<std::size_t>(size) * width(k)]);
 }
 
 template <class Real>
@@ -44,7 +45,8 @@ Real* LuFactor<Real>::column(int j) {
   return panels_[j / panel_width].get() + static_cast<std::size_t>(j % panel_width) * size_;
 }
 
-// Right-looking: factor a panel, then swap, solve and update every other one, which are independent of each other.
+// Right-looking: factor a panel, then swap, solve and update every other one, which are independent of each
+// other.
 template <class Real>
 bool LuFactor<Real>::factor() {
   const SingleThreadedBlas single_threaded;
@@ -56,10 +58,10 @@ bool LuFactor<Real>::factor() {
       if (j == k) return;
       blas::swap_rows(width(j), at(j, top), size_, w, pivots);
       if (j < k) return;
-      blas::solve_triangle(CblasColMajor, CblasLeft, CblasLower, CblasNoTrans, CblasUnit, w, width(j), at(k, top),
-                           size_, at(j, top), size_);
-      blas::subtract_product(CblasColMajor, CblasNoTrans, size_ - below, width(j), w, at(k, below), size_, at(j, top),
-                             size_, at(j, below), size_);
+      blas::solve_triangle(CblasColMajor, CblasLeft, CblasLower, CblasNoTrans, CblasUnit, w, width(j),
+                           at(k, top), size_, at(j, top), size_);
+      blas::subtract_product(CblasColMajor, CblasNoTrans, size_ - below, width(j), w, at(k, below), size_,
+                             at(j, top), size_, at(j, below), size_);
     });
   }
   return true;
@@ -74,19 +76,19 @@ void LuFactor<Real>::solve(Block& x) const {
     blas::swap_rows(m, rows(first(k)), size_, width(k), pivots_.data() + first(k));
   }
   for (int k = 0; k < panel_count(); ++k) {
-    blas::solve_triangle(CblasColMajor, CblasLeft, CblasLower, CblasNoTrans, CblasUnit, width(k), m, at(k, first(k)),
-                         size_, rows(first(k)), size_);
+    blas::solve_triangle(CblasColMajor, CblasLeft, CblasLower, CblasNoTrans, CblasUnit, width(k), m,
+                         at(k, first(k)), size_, rows(first(k)), size_);
     for_row_tiles(first(k + 1), size_, [&](int i, int count) {
-      blas::subtract_product(CblasColMajor, CblasNoTrans, count, m, width(k), at(k, i), size_, rows(first(k)), size_,
-                             rows(i), size_);
+      blas::subtract_product(CblasColMajor, CblasNoTrans, count, m, width(k), at(k, i), size_, rows(first(k)),
+                             size_, rows(i), size_);
     });
   }
   for (int k = panel_count() - 1; k >= 0; --k) {
     blas::solve_triangle(CblasColMajor, CblasLeft, CblasUpper, CblasNoTrans, CblasNonUnit, width(k), m,
                          at(k, first(k)), size_, rows(first(k)), size_);
     for_row_tiles(0, first(k), [&](int i, int count) {
-      blas::subtract_product(CblasColMajor, CblasNoTrans, count, m, width(k), at(k, i), size_, rows(first(k)), size_,
-                             rows(i), size_);
+      blas::subtract_product(CblasColMajor, CblasNoTrans, count, m, width(k), at(k, i), size_, rows(first(k)),
+                             size_, rows(i), size_);
     });
   }
 }

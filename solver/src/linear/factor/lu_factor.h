@@ -6,8 +6,8 @@
 
 namespace luxel {
 
-/// P L U of a square matrix M, with partial pivoting, in panels of columns, each column-major and contiguous. Memory: n^2
-/// numbers, factored in place. The same bits for any number of threads.
+/// P L U of a square matrix M, with partial pivoting, in panels of columns, each column-major and contiguous.
+/// Memory: n^2 numbers, factored in place. The same bits for any number of threads.
 template <class Real>
 class LuFactor {
  public:

@@ -32,7 +32,8 @@ PatchField refine(const RadiositySystem& system, PatchField radiosity, const Fac
   Correction correct = factorise(precision);
   while (true) {
     if (!correct && precision == FactorPrecision::float64) {
-      watch.stop(Stopped::diverged, "the system cannot be factored: the operator returns more light than it is given");
+      watch.stop(Stopped::diverged,
+                 "the system cannot be factored: the operator returns more light than it is given");
       return radiosity;
     }
     const double before = system.relative_norms(residual).maxCoeff();
@@ -52,12 +53,15 @@ PatchField refine(const RadiositySystem& system, PatchField radiosity, const Fac
       correct = factorise(precision);
       continue;
     }
-    if (after <= before || watch.report().iterations == 0) radiosity = std::move(refined);
-    else residual = system.residual(radiosity);
+    if (after <= before || watch.report().iterations == 0)
+      radiosity = std::move(refined);
+    else
+      residual = system.residual(radiosity);
     if (!watch.next(residual, radiosity)) return radiosity;
     watch.report().refinements = watch.report().iterations - 1;
     if (poor && watch.report().iterations > 1) {
-      watch.stop(Stopped::stagnated, "refinement has met the rounding of float64 at this ratio of radiosity to emission");
+      watch.stop(Stopped::stagnated,
+                 "refinement has met the rounding of float64 at this ratio of radiosity to emission");
       return radiosity;
     }
   }
