@@ -2,29 +2,23 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "angle.h"
 #include "polygon.h"
 
 namespace luxel {
 
 namespace {
 
-constexpr double degrees = 180 / std::numbers::pi;
-
 // Share of the patches that may be sharper than one_percent_angle.
 constexpr double percentile = 0.01;
-
-/// The angle [degrees] between two directions, exact for thin ones too.
-double angle(const Vec3& a, const Vec3& b) {
-  return degrees * std::atan2(a.cross(b).norm(), a.dot(b));
-}
 
 double smallest_angle(std::span<const Vec3> loop) {
   const std::size_t n = loop.size();
   double smallest = 180;
   for (std::size_t i = 0; i < n; ++i) {
-    smallest = std::min(smallest, angle(loop[(i + 1) % n] - loop[i], loop[(i + n - 1) % n] - loop[i]));
+    smallest = std::min(smallest, degrees_per_radian * angle_between(loop[(i + 1) % n] - loop[i],
+                                                                     loop[(i + n - 1) % n] - loop[i]));
   }
   return smallest;
 }
