@@ -22,7 +22,7 @@ std::string number(double value, const char* format = "%.3g") {
 // 12,345,678
 std::string count(std::int64_t value) {
   std::string text = std::to_string(value);
-  for (int at = static_cast<int>(text.size()) - 3; at > (value < 0 ? 1 : 0); at -= 3) text.insert(at, ",");
+  for (int at = static_cast<int>(text.size()) - 3; at > (value < 0 ? 1 : 0); at -= 3) text.insert(at, 1, ',');
   return text;
 }
 
