@@ -94,7 +94,9 @@ class MtlReader {
 
   Rgb emission(std::string_view text) const {
     const Rgb value = colour("Ke", text);
-    if ((value < 0).any()) fail("emission Ke " + std::string(text) + "; expected 0 or more");
+    if ((value < 0).any() || (value > largest_emission).any()) {
+      fail("emission Ke " + std::string(text) + "; expected 0 to 1e100");
+    }
     return unit_ == EmissionUnit::Radiance ? Rgb(std::numbers::pi * value) : value;
   }
 

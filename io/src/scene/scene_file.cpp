@@ -3,14 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "scene/file_text.h"
 #include "scene/input_location.h"
 #include "scene/json_tree.h"
 #include "scene/scene_values.h"
+#include "scene/surface_soup.h"
 
 namespace luxel {
 namespace {
@@ -85,7 +86,10 @@ Eigen::Affine3d read_transform(const SceneValue& value) {
 MeshPlacement read_placement(const SceneValue& value) {
   const auto path_of = [&](const SceneValue& name) {
     if (name.text().empty()) name.refuse("is empty; expected a file name");
-    return value.file.parent_path() / std::filesystem::path(name.text());
+    const std::filesystem::path path = value.file.parent_path() / std::filesystem::path(name.text());
+    std::error_code error;
+    if (!std::filesystem::exists(path, error)) name.refuse(in_quotes(name.text()) + " does not exist");
+    return path;
   };
   MeshPlacement placement;
   placement.line = value.json.line;
@@ -122,7 +126,7 @@ std::optional<EmissionRule> read_emission(const SceneValue& entry) {
     if (!entry.json.member(key)) continue;
     const SceneValue value = entry.member(key);
     if (rule) value.refuse("emission is stated twice; expected one of exitance, radiance, power");
-    rule = EmissionRule{kind, value.colour(0, std::numeric_limits<double>::max(), "0 or more")};
+    rule = EmissionRule{kind, value.colour(0, largest_emission, "0 to 1e100")};
   }
   return rule;
 }

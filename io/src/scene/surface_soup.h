@@ -34,6 +34,9 @@ struct SurfaceSoup {
   std::size_t face_count() const { return face_offsets.size() - 1; }
 };
 
+/// The most that a surface may emit, whatever its unit: squares and sums over a scene must not overflow.
+inline constexpr double largest_emission = 1e100;
+
 /// The name of the group or material of faces for which a file gives none.
 inline constexpr std::string_view default_name = "default";
 

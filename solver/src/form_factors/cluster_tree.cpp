@@ -257,6 +257,7 @@ class Builder {
     const double length = normal.norm();
     cluster.plane.normal = length > 0 ? Vec3(normal / length) : Vec3::UnitZ();
     cluster.plane.offset = cluster.plane.normal.dot(cluster.centre);
+    cluster.setback = {infinity, -infinity};
     cluster.hull.count = 8;
     for (int k = 0; k < 8; ++k) {
       cluster.hull.corners[k] =
@@ -267,7 +268,9 @@ class Builder {
       const Vec3& n = patch.plane.normal;
       const double angle = std::atan2(n.cross(cluster.plane.normal).norm(), n.dot(cluster.plane.normal));
       cluster.cone = std::max(cluster.cone, angle);
-      cluster.setback = std::max(cluster.setback, patch.plane.distance(cluster.centre));
+      const double setback = patch.plane.distance(cluster.centre);
+      cluster.setback.low = std::min(cluster.setback.low, setback);
+      cluster.setback.high = std::max(cluster.setback.high, setback);
       for (int c = 0; c < patch.outline.count; ++c) {
         cluster.radius = std::max(cluster.radius, (patch.outline[c] - cluster.centre).norm());
       }

@@ -16,7 +16,7 @@ struct Cluster {
   bool planar = true;  ///< all patches lie in one plane, up to `thickness`, and share it bit for bit
   Plane plane;         ///< of a planar cluster; else mean normal through the centre
   double cone = 0;     ///< largest angle between the mean normal and a patch's normal [rad]; 0 if planar
-  double setback = 0;  ///< how far the centre lies in front of the furthest patch plane, >= 0; 0 if planar
+  Span setback;        ///< how far the patches' planes lie behind the centre, least and most; 0 if planar
   double thickness =
       0;              ///< largest distance of a corner from the plane of a planar cluster: rounding; else 0
   Vec3 centre;        ///< of the bounding sphere
@@ -54,8 +54,8 @@ ClusterTree cluster_tree(const PatchMesh& mesh);
 /// exchange less than 1e-9 of their light.
 bool may_face(const Cluster& a, const Cluster& b);
 
-/// Smallest and largest height of b's hull above the plane of planar a, `thickness` of both included: low >=
-/// -plane_tolerance proves that all of b lies in front of all of a.
+/// Bounds of the heights of b's points above the planes of a's patches, for planar clusters exact up to
+/// `thickness`: low >= -plane_tolerance proves that all of b lies in front of all of a.
 Span heights_over(const Cluster& a, const Cluster& b);
 
 }  // namespace luxel

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "form_factors/cluster_tree.h"
 
@@ -18,34 +19,29 @@ constexpr double same_way = 1e-5;
 double support(const Cluster& cluster, const Vec3& offset) {
   const double along = cluster.plane.normal.dot(offset);
   if (cluster.planar) return along;
+  if (cluster.cone >= 0.5 * std::numbers::pi) return offset.norm();
   const double across = std::sqrt(std::max(offset.squaredNorm() - along * along, 0.0));
   if (std::atan2(across, along) <= cluster.cone) return offset.norm();
   return along * std::cos(cluster.cone) + across * std::sin(cluster.cone);
 }
 
-// Whether a point of b's hull may lie in front of a patch of a. The support function is convex up to cones of
-// 90 degrees, so that its largest value is at a corner.
-bool may_see(const Cluster& a, const Cluster& b) {
-  if (a.cone >= 1.5) return true;
-  for (int k = 0; k < b.hull.count; ++k) {
-    if (support(a, b.hull[k] - a.centre) + a.setback + a.thickness + b.thickness > plane_tolerance)
-      return true;
-  }
-  return false;
-}
-
 }  // namespace
+
+Span heights_over(const Cluster& a, const Cluster& b) {
+  const double rounding = a.thickness + b.thickness;
+  Span span{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+  for (int k = 0; k < b.hull.count; ++k) {
+    const Vec3 offset = b.hull[k] - a.centre;
+    span.low = std::min(span.low, -support(a, -offset) + a.setback.low - rounding);
+    span.high = std::max(span.high, support(a, offset) + a.setback.high + rounding);
+  }
+  return span;
+}
 
 bool may_face(const Cluster& a, const Cluster& b) {
   const double apart = (a.plane.normal - b.plane.normal).norm();
   if (apart + a.cone + b.cone <= same_way) return false;
-  return may_see(a, b) && may_see(b, a);
-}
-
-Span heights_over(const Cluster& a, const Cluster& b) {
-  Span span = span_along(b.hull, a.plane);
-  const double rounding = a.thickness + b.thickness;
-  return {span.low - rounding, span.high + rounding};
+  return heights_over(a, b).high > plane_tolerance && heights_over(b, a).high > plane_tolerance;
 }
 
 }  // namespace luxel

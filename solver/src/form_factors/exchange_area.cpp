@@ -1,0 +1,98 @@
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "form_factors/pair.h"
+#include "luxel/form_factors.h"
+
+namespace luxel {
+
+namespace {
+
+Polygon polygon_of(std::span<const Vec3> corners, const Vec3& origin, double scale) {
+  if (corners.size() < 3 || corners.size() > 8) {
+    throw std::invalid_argument("a polygon has 3 to 8 corners, not " + std::to_string(corners.size()));
+  }
+  Polygon polygon;
+  for (const Vec3& corner : corners) polygon.corners[polygon.count++] = (corner - origin) * scale;
+  return polygon;
+}
+
+double radius_about(const Polygon& polygon, const Vec3& centre) {
+  double radius = 0;
+  for (int k = 0; k < polygon.count; ++k) radius = std::max(radius, (polygon[k] - centre).norm());
+  return radius;
+}
+
+// Gauss points along a side for a relative error of 1e-13 where the kernel's nearest singularity is
+// `distance` from a patch of half-diameter `radius`: the Bernstein ellipse through it.
+int order_for(double distance, double radius) {
+  constexpr double log_error = 30;  // -ln 1e-13
+  const double x = std::max(distance / std::max(radius, 1e-300), 1e-3);
+  const double rate = std::log(x + std::sqrt(x * x + 1));
+  return std::clamp(static_cast<int>(std::ceil(log_error / (2 * rate))) + 1, 2, 12);
+}
+
+}  // namespace
+
+double exchange_area(std::span<const Vec3> a, std::span<const Vec3> b) {
+  // The smaller polygon sits at the origin, where its corners keep all their digits.
+  Polygon p = polygon_of(a, Vec3::Zero(), 1), q = polygon_of(b, Vec3::Zero(), 1);
+  bool swapped = false;
+  if (radius_about(p, p[0]) > radius_about(q, q[0])) swapped = true;
+  const Vec3 origin = swapped ? q[0] : p[0];
+  double reach = 0;
+  for (const Vec3& x : a) reach = std::max(reach, (x - origin).norm());
+  for (const Vec3& x : b) reach = std::max(reach, (x - origin).norm());
+  if (!(reach > 0) || !std::isfinite(reach)) return 0;
+  int exponent = 0;
+  std::frexp(reach, &exponent);
+  const double scale = std::ldexp(1.0, -exponent);
+  p = polygon_of(swapped ? b : a, origin, scale);
+  q = polygon_of(swapped ? a : b, origin, scale);
+
+  const Plane plane_p = plane_through(p), plane_q = plane_through(q);
+  // Corners nearer to a plane than rounding lie on it.
+  constexpr double on_plane = 4e-16;
+  p = clip(p, plane_q, on_plane);
+  q = clip(q, plane_p, on_plane);
+  if (p.count == 0 || q.count == 0) return 0;
+  const double area_p = area(p, plane_p.normal), area_q = area(q, plane_q.normal);
+  if (area_p <= 0 || area_q <= 0) return 0;
+
+  const Vec3 centre_p = centroid(p), centre_q = centroid(q);
+  const double radius_p = radius_about(p, centre_p), radius_q = radius_about(q, centre_q);
+  const double distance = gap(p, plane_p, q, plane_q);
+  double value = 0;
+  if (distance > 1.5 * std::max(radius_p, radius_q)) {
+    const int order = order_for(distance, std::max(radius_p, radius_q));
+    value = point_exchange(p, plane_p.normal, q, plane_q.normal, order);
+  } else if (distance > 1.5 * radius_p) {
+    value = lambert_exchange(p, plane_p.normal, q, order_for(distance, radius_p));
+  } else if (distance > 1.5 * radius_q) {
+    value = lambert_exchange(q, plane_q.normal, p, order_for(distance, radius_q));
+  } else {
+    // 1e-12 of the exchange area, which grazing pairs may have down to 1e-3 of the smaller area.
+    value = contour_exchange(p, q, 1e-15 * std::min(area_p, area_q));
+  }
+  return std::max(value, 0.0) / (scale * scale);
+}
+
+double point_form_factor(const Vec3& point, const Vec3& normal, std::span<const Vec3> polygon) {
+  const Polygon moved = polygon_of(polygon, point, 1);
+  if (plane_through(moved).distance(Vec3::Zero()) <= 0) return 0;
+  double reach = 0;
+  for (int k = 0; k < moved.count; ++k) reach = std::max(reach, moved[k].norm());
+  const Polygon seen = clip(moved, {normal, 0}, 1e-15 * reach);
+  double sum = 0;
+  for (int k = 0; k < seen.count; ++k) {
+    const Vec3 across = seen.next(k).cross(seen[k]);
+    const double length = across.norm();
+    if (length > 0) sum += std::atan2(length, seen[k].dot(seen.next(k))) / length * across.dot(normal);
+  }
+  return std::max(sum, 0.0) / (2 * std::numbers::pi);
+}
+
+}  // namespace luxel

@@ -1,0 +1,33 @@
+#include "form_factors/rule_choice.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace luxel {
+
+namespace {
+
+// Largest relative errors of pairs of equal squares in the least favourable position, times
+// (distance / edge)^(2 q). Measured; see docs/decisions/0006-unoccluded-form-factors.md.
+constexpr std::array<double, point_levels + 1> error_constant{0, 4.3e-2, 1.8e-3, 1.8e-3, 6.5e-4};
+
+// Nearer than this the first term left out no longer tells the error.
+constexpr std::array<double, point_levels + 1> nearest{0, 2.5, 1.6, 1.4, 1.2};
+
+}  // namespace
+
+double RuleChoice::error(int level, double distance) {
+  return error_constant[level] / std::pow(distance, 2 * level);
+}
+
+RuleChoice rule_choice(double accuracy) {
+  RuleChoice choice;
+  for (int q = 1; q <= point_levels; ++q) {
+    choice.from[q] = std::max(std::pow(error_constant[q] / accuracy, 1.0 / (2 * q)), nearest[q]);
+  }
+  choice.fine = accuracy < 2e-7;
+  choice.pair_tolerance = 0.01 * accuracy;
+  return choice;
+}
+
+}  // namespace luxel
