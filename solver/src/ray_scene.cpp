@@ -246,9 +246,10 @@ RayScene::Hit RayScene::Impl::second_opinion(const Vec3& origin, const Vec3& nor
   const std::array<Vec3, 3> directions{direction, direction, direction};
   std::array<Hit, 3> hits;
   trace(origins.data(), starts.data(), normals.data(), directions.data(), hits.data(), 3);
+  const auto rank = [](const Hit& hit) { return hit.front ? 2 : hit.primitive >= 0 ? 1 : 0; };
   Hit best = first;
   for (const Hit& hit : hits) {
-    if (hit.front && (!best.front || hit.distance < best.distance)) best = hit;
+    if (rank(hit) > rank(best) || (rank(hit) == rank(best) && hit.distance < best.distance)) best = hit;
   }
   return best;
 }
@@ -279,7 +280,7 @@ RayScene::RayScene(RayScene&&) noexcept = default;
 RayScene& RayScene::operator=(RayScene&&) noexcept = default;
 
 void RayScene::intersect(std::span<const Vec3> origins, std::span<const Vec3> normals,
-                         std::span<const Vec3> directions, std::span<Hit> hits) const {
+                         std::span<const Vec3> directions, std::span<Hit> hits, Look look) const {
   if (normals.size() != origins.size() || directions.size() != origins.size() ||
       hits.size() != origins.size()) {
     throw std::invalid_argument(
@@ -302,7 +303,8 @@ void RayScene::intersect(std::span<const Vec3> origins, std::span<const Vec3> no
       if (!impl_->names.empty() && !hit.front && hit.primitive >= 0) {
         hit = impl_->facing_twin(local[k], normals[begin + k], directions[begin + k], hit);
       }
-      if (!hit.front) hit = impl_->second_opinion(local[k], normals[begin + k], directions[begin + k], hit);
+      if (look == Look::twice && !hit.front)
+        hit = impl_->second_opinion(local[k], normals[begin + k], directions[begin + k], hit);
       hit.distance /= impl_->scale;
       if (hit.primitive >= 0 && !impl_->names.empty()) hit.primitive = impl_->names[hit.primitive];
     }
