@@ -65,10 +65,11 @@ void HexagonalLattice::find_runs(std::span<const std::array<Vec2, 2>> border) {
     Vec2 a((part[0] - origin_).dot(along_), (part[0] - origin_).dot(across) - bottom_);
     Vec2 b((part[1] - origin_).dot(along_), (part[1] - origin_).dot(across) - bottom_);
     if (a.y() > b.y()) std::swap(a, b);
-    // Half open, so that a corner on a row counts once.
-    const int first = std::max(0, static_cast<int>(std::ceil(a.y() / row_step_)));
-    for (int row = first; row < row_count_ && row * row_step_ < b.y(); ++row) {
-      crossings[row].push_back(a.x() + (b.x() - a.x()) * (row * row_step_ - a.y()) / (b.y() - a.y()));
+    // Half open, so that a corner on a row counts once. The first and the last row touch the border only.
+    const int first = std::max(1, static_cast<int>(std::ceil(a.y() / row_step_)));
+    for (int row = first; row + 1 < row_count_ && row * row_step_ < b.y(); ++row) {
+      const double share = std::clamp((row * row_step_ - a.y()) / (b.y() - a.y()), 0.0, 1.0);
+      crossings[row].push_back(a.x() + (b.x() - a.x()) * share);
     }
   }
   rows_.resize(row_count_);
@@ -76,7 +77,8 @@ void HexagonalLattice::find_runs(std::span<const std::array<Vec2, 2>> border) {
     auto& xs = crossings[row];
     std::sort(xs.begin(), xs.end());
     for (std::size_t k = 0; k + 1 < xs.size(); k += 2) {
-      const int first = static_cast<int>(std::ceil(column_of(row, xs[k])));
+      int first = static_cast<int>(std::ceil(column_of(row, xs[k])));
+      if (!rows_[row].empty()) first = std::max(first, rows_[row].back().last + 1);
       const int last = static_cast<int>(std::floor(column_of(row, xs[k + 1])));
       if (first > last) continue;
       rows_[row].push_back({first, last, free_.size()});
