@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
+#include <utility>
 
 #include "form_factors/pair.h"
 #include "luxel/form_factors.h"
@@ -35,6 +36,54 @@ int order_for(double distance, double radius) {
   return std::clamp(static_cast<int>(std::ceil(log_error / (2 * rate))) + 1, 2, 12);
 }
 
+// Corners nearer to a plane than rounding lie on it; lengths are at most 1.
+constexpr double on_plane = 4e-16;
+
+// Beyond this ratio of sizes the contour integral of touching polygons loses digits: the larger one is
+// halved.
+constexpr double largest_ratio = 32;
+
+// The polygon's two halves across its longest diameter.
+std::pair<Polygon, Polygon> halves(const Polygon& polygon) {
+  Vec3 diameter = Vec3::Zero();
+  for (int i = 0; i < polygon.count; ++i) {
+    for (int j = 0; j < i; ++j) {
+      const Vec3 d = polygon[i] - polygon[j];
+      if (d.squaredNorm() > diameter.squaredNorm()) diameter = d;
+    }
+  }
+  const Vec3 normal = diameter.normalized();
+  const Plane middle{normal, normal.dot(centroid(polygon))};
+  return {clip(polygon, middle, 0), clip(polygon, middle.flipped(), 0)};
+}
+
+// Exchange area of polygons in front of each other's plane.
+double unclipped_exchange(const Polygon& p, const Plane& plane_p, const Polygon& q, const Plane& plane_q) {
+  const double area_p = area(p, plane_p.normal), area_q = area(q, plane_q.normal);
+  if (p.count == 0 || q.count == 0 || area_p <= 0 || area_q <= 0) return 0;
+  const double radius_p = radius_about(p, centroid(p)), radius_q = radius_about(q, centroid(q));
+  const double distance = gap(p, plane_p, q, plane_q);
+  // Gauss rules converge from this many radii on.
+  constexpr double smooth = 1.5;
+  if (distance > smooth * std::max(radius_p, radius_q)) {
+    const int order = order_for(distance, std::max(radius_p, radius_q));
+    return point_exchange(p, plane_p.normal, q, plane_q.normal, order);
+  }
+  if (distance > smooth * radius_p)
+    return lambert_exchange(p, plane_p.normal, q, order_for(distance, radius_p));
+  if (distance > smooth * radius_q)
+    return lambert_exchange(q, plane_q.normal, p, order_for(distance, radius_q));
+  if (radius_q > largest_ratio * radius_p && q.count < Polygon::capacity) {
+    const auto [first, second] = halves(q);
+    return unclipped_exchange(p, plane_p, first, plane_q) + unclipped_exchange(p, plane_p, second, plane_q);
+  }
+  if (radius_p > largest_ratio * radius_q && p.count < Polygon::capacity) {
+    return unclipped_exchange(q, plane_q, p, plane_p);
+  }
+  // 1e-12 of the exchange area, which grazing pairs may have down to 1e-3 of the smaller area.
+  return contour_exchange(p, q, 1e-15 * std::min(area_p, area_q));
+}
+
 }  // namespace
 
 double exchange_area(std::span<const Vec3> a, std::span<const Vec3> b) {
@@ -54,29 +103,9 @@ double exchange_area(std::span<const Vec3> a, std::span<const Vec3> b) {
   q = polygon_of(swapped ? a : b, origin, scale);
 
   const Plane plane_p = plane_through(p), plane_q = plane_through(q);
-  // Corners nearer to a plane than rounding lie on it.
-  constexpr double on_plane = 4e-16;
-  p = clip(p, plane_q, on_plane);
-  q = clip(q, plane_p, on_plane);
-  if (p.count == 0 || q.count == 0) return 0;
-  const double area_p = area(p, plane_p.normal), area_q = area(q, plane_q.normal);
-  if (area_p <= 0 || area_q <= 0) return 0;
-
-  const Vec3 centre_p = centroid(p), centre_q = centroid(q);
-  const double radius_p = radius_about(p, centre_p), radius_q = radius_about(q, centre_q);
-  const double distance = gap(p, plane_p, q, plane_q);
-  double value = 0;
-  if (distance > 1.5 * std::max(radius_p, radius_q)) {
-    const int order = order_for(distance, std::max(radius_p, radius_q));
-    value = point_exchange(p, plane_p.normal, q, plane_q.normal, order);
-  } else if (distance > 1.5 * radius_p) {
-    value = lambert_exchange(p, plane_p.normal, q, order_for(distance, radius_p));
-  } else if (distance > 1.5 * radius_q) {
-    value = lambert_exchange(q, plane_q.normal, p, order_for(distance, radius_q));
-  } else {
-    // 1e-12 of the exchange area, which grazing pairs may have down to 1e-3 of the smaller area.
-    value = contour_exchange(p, q, 1e-15 * std::min(area_p, area_q));
-  }
+  if (span_along(p, plane_q).high <= on_plane || span_along(q, plane_p).high <= on_plane) return 0;
+  const double value =
+      unclipped_exchange(clip(p, plane_q, on_plane), plane_p, clip(q, plane_p, on_plane), plane_q);
   return std::max(value, 0.0) / (scale * scale);
 }
 
