@@ -2,7 +2,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "form_factors/pair.h"
@@ -12,13 +14,22 @@ namespace luxel {
 
 namespace {
 
-Polygon polygon_of(std::span<const Vec3> corners, const Vec3& origin, double scale) {
+void require_polygon(std::span<const Vec3> corners) {
   if (corners.size() < 3 || corners.size() > 8) {
     throw std::invalid_argument("a polygon has 3 to 8 corners, not " + std::to_string(corners.size()));
   }
+}
+
+Polygon polygon_of(std::span<const Vec3> corners, const Vec3& origin, double scale) {
   Polygon polygon;
   for (const Vec3& corner : corners) polygon.corners[polygon.count++] = (corner - origin) * scale;
   return polygon;
+}
+
+double reach_from(const Vec3& origin, std::span<const Vec3> corners) {
+  double reach = 0;
+  for (const Vec3& corner : corners) reach = std::max(reach, (corner - origin).norm());
+  return reach;
 }
 
 double radius_about(const Polygon& polygon, const Vec3& centre) {
@@ -87,21 +98,16 @@ double unclipped_exchange(const Polygon& p, const Plane& plane_p, const Polygon&
 }  // namespace
 
 double exchange_area(std::span<const Vec3> a, std::span<const Vec3> b) {
+  require_polygon(a);
+  require_polygon(b);
   // The smaller polygon sits at the origin, where its corners keep all their digits.
-  Polygon p = polygon_of(a, Vec3::Zero(), 1), q = polygon_of(b, Vec3::Zero(), 1);
-  bool swapped = false;
-  if (radius_about(p, p[0]) > radius_about(q, q[0])) swapped = true;
-  const Vec3 origin = swapped ? q[0] : p[0];
-  double reach = 0;
-  for (const Vec3& x : a) reach = std::max(reach, (x - origin).norm());
-  for (const Vec3& x : b) reach = std::max(reach, (x - origin).norm());
+  if (reach_from(a[0], a) > reach_from(b[0], b)) std::swap(a, b);
+  const double reach = std::max(reach_from(a[0], a), reach_from(a[0], b));
   if (!(reach > 0) || !std::isfinite(reach)) return 0;
   int exponent = 0;
   std::frexp(reach, &exponent);
   const double scale = std::ldexp(1.0, -exponent);
-  p = polygon_of(swapped ? b : a, origin, scale);
-  q = polygon_of(swapped ? a : b, origin, scale);
-
+  const Polygon p = polygon_of(a, a[0], scale), q = polygon_of(b, a[0], scale);
   const Plane plane_p = plane_through(p), plane_q = plane_through(q);
   if (span_along(p, plane_q).high <= on_plane || span_along(q, plane_p).high <= on_plane) return 0;
   const double value =
@@ -110,6 +116,7 @@ double exchange_area(std::span<const Vec3> a, std::span<const Vec3> b) {
 }
 
 double point_form_factor(const Vec3& point, const Vec3& normal, std::span<const Vec3> polygon) {
+  require_polygon(polygon);
   const Polygon moved = polygon_of(polygon, point, 1);
   if (plane_through(moved).distance(Vec3::Zero()) <= 0) return 0;
   double reach = 0;
