@@ -30,11 +30,20 @@ class RayScene {
 
   static constexpr int second_half = 1 << 30;
 
+  /// How a ray that meets no front is treated. Float rounds at 6e-8 of the scene, so that beside an edge, or
+  /// along a crack of that width, a ray may slip through.
+  enum class Look {
+    once,  ///< taken as it is
+    twice  ///< asked again from 5e-7 of the diagonal aside, three ways: a closed body never leaks, and
+           ///< openings narrower than that are not seen
+  };
+
   /// Nearest hits of rays that start at `origins` (a hair off the surface is the callee's business: each
-  /// origin comes with the unit normal of the surface that it lies on) along unit `directions`; the three
-  /// spans have one length.
+  /// origin comes with the unit normal of the surface that it lies on) along unit `directions`; the four
+  /// spans have one length. Triangles in the plane of an origin and parallel to it are never met.
+  /// @throws std::invalid_argument if the lengths differ
   void intersect(std::span<const Vec3> origins, std::span<const Vec3> normals,
-                 std::span<const Vec3> directions, std::span<Hit> hits) const;
+                 std::span<const Vec3> directions, std::span<Hit> hits, Look look = Look::twice) const;
 
   /// The Embree scene (RTCScene) and the map to its coordinates, x' = (x - centre) * scale, for kernels of
   /// the solver that build their own packets.

@@ -1,0 +1,299 @@
+#include "command_line.h"
+
+#include <algorithm>
+#include <functional>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "luxel/input_error.h"
+#include "suggestion.h"
+#include "values.h"
+#include "version.h"
+
+namespace luxel::app {
+
+namespace {
+
+constexpr const char* sizing = "Patches";
+constexpr const char* transport = "Form factors";
+constexpr const char* solving = "Solving";
+constexpr const char* output = "Output";
+constexpr const char* resources = "Resources";
+
+[[noreturn]] void refuse(const std::string& option, const std::string& found, const std::string& expected) {
+  throw InputError(fmt::format("{}: found '{}', expected {}", option, found, expected));
+}
+
+// One option with a value; `accept` gives false where the text is not what is expected.
+CLI::Option* value_option(CLI::App& app, const std::string& names, const char* type,
+                          const std::string& expected, const std::string& description,
+                          std::function<bool(const std::string&)> accept) {
+  const std::string shown = names.substr(names.find("--"));
+  return app
+      .add_option_function<std::string>(
+          names,
+          [=](const std::string& text) {
+            if (!accept(text)) refuse(shown, text, expected);
+          },
+          description)
+      ->type_name(type);
+}
+
+// A number in (low, high], or [low, high] where low is allowed itself.
+CLI::Option* number_option(CLI::App& app, const std::string& name, const char* type, double low,
+                           bool low_allowed, double high, const std::string& expected,
+                           const std::string& description, std::function<void(double)> store) {
+  return value_option(app, name, type, expected, description, [=](const std::string& text) {
+    const auto value = parse_number(text);
+    if (!value || *value > high || *value < low || (*value == low && !low_allowed)) return false;
+    store(*value);
+    return true;
+  });
+}
+
+CLI::Option* count_option(CLI::App& app, const std::string& name, const char* type, std::uint64_t low,
+                          std::uint64_t high, const std::string& expected, const std::string& description,
+                          std::function<void(std::uint64_t)> store) {
+  return value_option(app, name, type, expected, description, [=](const std::string& text) {
+    const auto value = parse_count(text);
+    if (!value || *value < low || *value > high) return false;
+    store(*value);
+    return true;
+  });
+}
+
+void add_general(CLI::App& app, GeneralOptions& general) {
+  app.add_flag("--json", general.json, "Print one JSON document on stdout instead of the summary")
+      ->group(output);
+  app.add_flag("--quiet", general.quiet, "No summary, no progress, no warnings")->group(output);
+  count_option(
+      app, "--threads", "N", 1, 4096, "a whole number from 1 to 4096",
+      "Threads to use; default: as many as the machine has. The result has the same bits for any number",
+      [&general](std::uint64_t n) { general.threads = static_cast<int>(n); })
+      ->group(resources);
+  value_option(app, "--memory", "BYTES", "a size above 0, with K, M or G (powers of 1024) if you like: 500M",
+               "Memory that may be taken, for example 500M or 2G; default: what the machine has",
+               [&general](const std::string& text) {
+                 const auto bytes = parse_bytes(text);
+                 if (bytes) general.memory = *bytes;
+                 return bytes.has_value();
+               })
+      ->group(resources);
+}
+
+void add_scene(CLI::App& app, SceneOptions& scene) {
+  app.add_option("SCENE", scene.file, "A mesh (.obj with its .mtl) or a scene file (.json)");
+  app.add_flag("--as-is", scene.meshing.as_is, "One patch per input face")->group(sizing);
+  number_option(app, "--patch-size", "LENGTH", 0, false, 1e300, "a length above 0 [m]",
+                "Longest edge of a patch, about [m]", [&scene](double x) { scene.meshing.patch_size = x; })
+      ->group(sizing);
+  count_option(app, "--patches", "N", 1, 1'000'000'000, "a whole number of at least 1",
+               "Number of patches, about; default: 5000, or one per face where the input has more",
+               [&scene](std::uint64_t n) { scene.meshing.patches = static_cast<int>(n); })
+      ->group(sizing);
+  value_option(
+      app, "--emission-unit", "UNIT", "radiance or exitance",
+      "What a mesh file's emission (Ke) is: radiance [W/m2/sr] or exitance [W/m2]; default: radiance",
+      [&scene](const std::string& text) {
+        scene.emission_is_exitance = text == "exitance";
+        return text == "exitance" || text == "radiance";
+      });
+}
+
+void add_form_factors(CLI::App& app, FormFactorOptions& options, std::string& save, std::string& load) {
+  number_option(app, "--accuracy", "A", 1e-8, true, 0.1, "a number from 1e-8 to 0.1",
+                "Relative error of the irradiance that the form factors may cause; default: 1e-3",
+                [&options](double x) { options.accuracy = x; })
+      ->group(transport);
+  value_option(
+      app, "--visibility", "HOW", "auto, rays or exact",
+      "How partly hidden pairs are measured: by rays, by exact clipping, or auto: the cheaper that is "
+      "accurate enough; default: auto",
+      [&options](const std::string& text) {
+        if (text == "auto") options.visibility = Visibility::automatic;
+        if (text == "rays") options.visibility = Visibility::rays;
+        if (text == "exact") options.visibility = Visibility::exact;
+        return text == "auto" || text == "rays" || text == "exact";
+      })
+      ->group(transport);
+  value_option(app, "--operator", "KIND", "auto or dense (no other operator is built)",
+               "How the form factors are kept: auto or dense; default: auto",
+               [](const std::string& text) { return text == "auto" || text == "dense"; })
+      ->group(transport);
+  count_option(app, "--seed", "N", 0, UINT64_MAX, "a whole number", "Seed of the random streams; default: 1",
+               [&options](std::uint64_t n) { options.seed = n; })
+      ->group(transport);
+  (void)save;
+  (void)load;
+}
+
+void add_solver(CLI::App& app, SolveOptions& options) {
+  static const std::vector<std::string> methods = {"auto",    "cholesky",     "lu",        "cg",    "gmres",
+                                                   "neumann", "gauss-seidel", "southwell", "jacobi"};
+  value_option(app, "--solver", "METHOD",
+               "auto, cholesky, lu, cg, gmres, neumann (= jacobi), gauss-seidel or southwell",
+               "auto, cholesky, lu, cg, gmres, neumann (= jacobi), gauss-seidel or southwell; default: auto",
+               [&options](const std::string& text) {
+                 if (text == "auto") return options.method = Method::automatic, true;
+                 const auto method = method_from_name(text);
+                 if (method) options.method = *method;
+                 return method.has_value();
+               })
+      ->group(solving);
+  number_option(app, "--tolerance", "T", 0, false, 1, "a number above 0 and up to 1",
+                "Stop at this relative residual; default: 1e-6",
+                [&options](double x) { options.tolerance = x; })
+      ->group(solving);
+  number_option(app, "--error", "T", 0, false, 1, "a number above 0 and up to 1",
+                "Stop at this error bound instead: largest error of B relative to the largest B",
+                [&options](double x) { options.error = x; })
+      ->group(solving);
+  count_option(app, "--max-iterations", "N", 1, 2'000'000'000, "a whole number of at least 1",
+               "Stop after so many iterations; default: 10000",
+               [&options](std::uint64_t n) { options.max_iterations = static_cast<int>(n); })
+      ->group(solving);
+  count_option(app, "--bounces", "K", 0, 2'000'000'000, "a whole number of at least 0",
+               "Follow the light for K bounces only (solver neumann); 0 leaves the emission",
+               [&options](std::uint64_t n) { options.bounces = static_cast<int>(n); })
+      ->group(solving);
+}
+
+void add_outputs(CLI::App& app, std::vector<std::string>& outputs, const char* description) {
+  app.add_option("-o,--output", outputs, description)
+      ->type_name("FILE")
+      ->allow_extra_args(false)
+      ->group(output);
+}
+
+// Names of an app's options as typed, for suggestions.
+std::vector<std::string> option_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  }
+  return names;
+}
+
+void refuse_extras(const CLI::App& app, const std::string& scene) {
+  for (const std::string& extra : app.remaining()) {
+    if (extra.size() > 1 && extra[0] == '-') {
+      const std::string typed = extra.substr(0, extra.find('='));
+      throw InputError(fmt::format("{}: unknown option '{}'{}", app.get_name(), typed,
+                                   suggestion(typed, option_names(app))));
+    }
+    throw InputError(fmt::format("{}: unexpected '{}' after the scene '{}'", app.get_name(), extra, scene));
+  }
+}
+
+void check_scene(const CLI::App& app, const SceneOptions& scene) {
+  refuse_extras(app, scene.file);
+  if (scene.file.empty())
+    throw InputError(app.get_name() + ": no scene given, expected a file (.obj or .json)");
+  if (scene.meshing.as_is + (scene.meshing.patch_size > 0) + (scene.meshing.patches > 0) > 1) {
+    throw InputError(app.get_name() +
+                     ": found more than one of --as-is, --patch-size and --patches, expected one");
+  }
+}
+
+// What is typed after `luxel`, where it is no command.
+[[noreturn]] void refuse_command(const std::string& typed) {
+  static const std::vector<std::string> commands = {"solve", "factors", "inspect"};
+  static const std::vector<std::string> later = {"compare", "stress", "render"};
+  if (std::find(later.begin(), later.end(), typed) != later.end()) {
+    throw InputError("the command '" + typed + "' is not part of this version");
+  }
+  if (!typed.empty() && typed[0] == '-') {
+    throw InputError(fmt::format("unknown option '{}' before the command (see luxel --help)", typed));
+  }
+  throw InputError(fmt::format("unknown command '{}'{} (expected solve, factors or inspect)", typed,
+                               suggestion(typed, commands)));
+}
+
+constexpr const char* main_footer =
+    "\nExamples:\n"
+    "  luxel solve room.obj -o room.vtp -o room.png     light for ParaView, and a picture\n"
+    "  luxel factors room.obj --by group                form factors between the groups\n"
+    "  luxel inspect room.obj                           what is in it and what is wrong with it\n"
+    "\nluxel COMMAND --help tells the rest. Lengths are in metres, radiosity, irradiance and emission in "
+    "W/m2.\n"
+    "Exit status: 0 done, 1 not reached (not converged, accuracy not met), 2 input or command line "
+    "unusable,\n"
+    "3 a fault of luxel, 130 stopped by Ctrl-C.";
+
+constexpr const char* solve_footer =
+    "\nExamples:\n"
+    "  luxel solve cornell.json -o cornell.vtp -o cornell.png\n"
+    "  luxel solve room.obj --patches 20000 --accuracy 1e-4 -o room.vtp --json > room.json\n"
+    "  luxel solve cube.obj --as-is --solver cholesky --tolerance 1e-12 -o cube.csv --full-precision\n"
+    "  luxel solve room.obj --bounces 5 -o bounces.pvd     one time step a bounce, for ParaView\n"
+    "\nUnits: lengths m; emission E, irradiance H and radiosity B W/m2; radiance is B / pi.";
+
+constexpr const char* factors_footer =
+    "\nExamples:\n"
+    "  luxel factors room.obj --by group\n"
+    "  luxel factors room.obj --as-is --accuracy 1e-6 -o factors.csv\n"
+    "  luxel factors room.obj --point 1,1,0.8,0,0,1        from a point and its normal to every group\n"
+    "\nF_ij is the share of what leaves patch i that arrives at patch j; A_i F_ij = A_j F_ji.";
+
+constexpr const char* inspect_footer =
+    "\nExamples:\n"
+    "  luxel inspect room.obj\n"
+    "  luxel inspect room.json --patches 100000 --json";
+
+}  // namespace
+
+Command parse_command_line(int argc, const char* const* argv) {
+  CLI::App app("Diffuse light in closed and open scenes by the radiosity method, with error bounds.",
+               "luxel");
+  app.set_help_flag("--help,-h", "Print this help and stop");
+  app.set_version_flag("--version", version_text(), "Print version and licence and stop");
+  app.allow_extras();
+  app.require_subcommand(0, 1);
+  app.footer(main_footer);
+
+  SolveCommand solve;
+  CLI::App* solve_app = app.add_subcommand("solve", "Light every patch: the main job")->allow_extras();
+  add_scene(*solve_app, solve.scene);
+  add_outputs(*solve_app, solve.outputs,
+              "Write this file, by its extension .vtp .pvd .csv .json .png .exr or .hdr; may be given again");
+  solve_app->add_flag("--full-precision", solve.full_precision, "17 digits in .csv instead of 9")
+      ->group(output);
+  add_form_factors(*solve_app, solve.form_factors, solve.save, solve.load);
+  add_solver(*solve_app, solve.solve);
+  add_general(*solve_app, solve.general);
+  solve_app->footer(solve_footer);
+
+  InspectCommand inspect;
+  CLI::App* inspect_app =
+      app.add_subcommand("inspect", "Tell what is in a scene, what is wrong with it and what it needs")
+          ->allow_extras();
+  add_scene(*inspect_app, inspect.scene);
+  add_general(*inspect_app, inspect.general);
+  inspect_app->footer(inspect_footer);
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::CallForHelp&) {
+    const auto chosen = app.get_subcommands();
+    return ShowText{chosen.empty() ? app.help()
+                                   : chosen.front()->help("luxel " + chosen.front()->get_name())};
+  } catch (const CLI::CallForVersion&) {
+    return ShowText{version_text()};
+  } catch (const CLI::ParseError& error) {
+    throw InputError(error.what());
+  }
+
+  if (!app.remaining().empty()) refuse_command(app.remaining().front());
+  if (*solve_app) {
+    check_scene(*solve_app, solve.scene);
+    return solve;
+  }
+  if (*inspect_app) {
+    check_scene(*inspect_app, inspect.scene);
+    return inspect;
+  }
+  throw InputError("no command given (expected solve, factors or inspect; see luxel --help)");
+}
+
+}  // namespace luxel::app

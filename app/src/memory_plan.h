@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstddef>
+
+#include "luxel/exchange_matrix.h"
+#include "luxel/solve.h"
+
+namespace luxel::app {
+
+/// float64 for systems so small that it costs nothing, and where the rounding of float32 (6e-8 of an entry)
+/// would be felt in the accuracy that is asked for; else float32.
+Precision storage_precision(int patches, double accuracy);
+
+/// Memory that reading and cutting a scene into so many patches takes, about [bytes].
+std::size_t mesh_bytes(int patches);
+
+/// Memory that solving a dense system of so many patches will take at its peak, about [bytes].
+std::size_t solve_bytes(int patches, Precision precision, Method method);
+
+/// @param limit  bytes that may be taken; 0: what the machine has
+/// @throws InputError with the estimate where it is above the limit
+void check_memory(std::size_t estimate, std::size_t limit, int patches);
+
+}  // namespace luxel::app

@@ -1,0 +1,81 @@
+#include "luxel/mesh_scene.h"
+
+#include <cmath>
+#include <stdexcept>
+
+#include "as_is.h"
+#include "facets.h"
+#include "luxel/input_error.h"
+#include "mesh_quality.h"
+#include "occluders.h"
+#include "patch_builder.h"
+#include "patch_limit.h"
+#include "sized.h"
+#include "t_junctions.h"
+
+namespace luxel {
+
+namespace {
+
+void check(const MeshingOptions& options) {
+  if (!(options.patch_size >= 0) || !std::isfinite(options.patch_size)) {
+    throw std::invalid_argument("patch_size must be a finite number of metres >= 0");
+  }
+  if (options.patches < 0) throw std::invalid_argument("patches must be >= 0");
+  if (options.as_is + (options.patch_size > 0) + (options.patches > 0) > 1) {
+    throw std::invalid_argument("at most one of as_is, patch_size and patches may be set");
+  }
+  if (!(options.crease_angle > 0 && options.crease_angle <= 180)) {
+    throw std::invalid_argument("crease_angle must be in (0, 180] degrees");
+  }
+  if (options.max_patches < 1) throw std::invalid_argument("max_patches must be >= 1");
+}
+
+void tell(const Progress& progress, double done) {
+  if (progress && !progress("meshing", done, 1)) throw Cancelled();
+}
+
+/// Whether the faces become patches unchanged: asked for, or because the input is finer than what is asked.
+bool keeps_faces(const MeshingOptions& options, std::size_t face_patches,
+                 std::vector<std::string>& warnings) {
+  if (options.as_is) return true;
+  if (options.patch_size > 0) return false;
+  const int wanted = options.patches > 0 ? options.patches : MeshingOptions::default_patches;
+  if (face_patches <= static_cast<std::size_t>(wanted)) return false;
+  if (options.patches > 0) {
+    warnings.push_back("the faces give " + std::to_string(face_patches) +
+                       " patches as they are, more than the " + std::to_string(wanted) +
+                       " asked for; they are kept, since faces are never merged into larger patches");
+  }
+  return true;
+}
+
+}  // namespace
+
+PatchMesh mesh_scene(const Scene& scene, const MeshingOptions& options, const Progress& progress) {
+  check(options);
+  validate(scene);
+  tell(progress, 0);
+  const Facets facets = make_facets(scene);
+  PatchMesh mesh = empty_mesh(scene);
+  mesh.warnings.insert(mesh.warnings.end(), facets.warnings.begin(), facets.warnings.end());
+  const std::size_t face_patches = count_patches(facets);
+  const bool as_is = keeps_faces(options, face_patches, mesh.warnings);
+  if (as_is) refuse_too_many(scene, static_cast<double>(face_patches), options.max_patches);
+
+  const RepairedFacets repaired = repair_t_junctions(facets);
+  FacetOccluders blocking = make_occluders(repaired.facets);
+  mesh.occluders = std::move(blocking.occluders);
+  if (as_is) {
+    append_facets(mesh, scene, facets, blocking.polygon_of_facet);
+  } else {
+    append_sized(mesh, scene, repaired.facets, blocking.polygon_of_facet, options, progress);
+    mesh.report.repaired_t_junctions = repaired.repaired;
+  }
+  measure_quality(mesh, facets);
+  mesh.report.remaining_t_vertices = count_t_vertices(mesh);
+  tell(progress, 1);
+  return mesh;
+}
+
+}  // namespace luxel

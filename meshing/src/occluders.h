@@ -1,0 +1,21 @@
+#pragma once
+
+#include <vector>
+
+#include "facets.h"
+#include "luxel/patch_mesh.h"
+
+namespace luxel {
+
+/// What blocks light, and where each facet is in it.
+struct FacetOccluders {
+  Occluders occluders;
+  std::vector<int> polygon_of_facet;
+};
+
+/// Coplanar facets merged into polygons, whatever their materials, and cut into triangles. The merged surface
+/// has no gap that the facets did not have; polygons that coincide, from either side, stand once. Cost: n log
+/// n.
+FacetOccluders make_occluders(const Facets& facets);
+
+}  // namespace luxel

@@ -1,0 +1,141 @@
+#include "luxel/solve.h"
+
+#include <cmath>
+#include <string>
+
+#include "linear/methods.h"
+#include "linear/singular.h"
+
+namespace luxel {
+
+namespace {
+
+// A residual from a recurrence differs from the true one by rounding only, which one or two fresh starts
+// repair.
+constexpr int fresh_starts = 4;
+
+// Right-hand sides of one reflectance from which one factorisation is cheaper than conjugate gradients for
+// each, and the size up to which its cubic cost stays below that (measured: docs/decisions/0009-solvers.md).
+constexpr Eigen::Index columns_for_cholesky = 10;
+constexpr Eigen::Index size_for_cholesky = 16'000;
+
+void require(bool holds, const std::string& message) {
+  if (!holds) throw std::invalid_argument("solve: " + message);
+}
+
+void check(const TransportOperator& transport, const PatchField& reflectance, const PatchField& emission,
+           const SolveOptions& options) {
+  const auto shape = [&](const PatchField& field) {
+    return std::to_string(field.rows()) + " x " + std::to_string(field.cols());
+  };
+  require(reflectance.rows() == transport.size() && emission.rows() == transport.size() &&
+              reflectance.cols() == emission.cols(),
+          "reflectance is " + shape(reflectance) + " and emission " + shape(emission) + " for " +
+              std::to_string(transport.size()) + " patches");
+  require((reflectance.array() >= 0 && reflectance.array() <= 1).all(), "reflectance must lie in [0, 1]");
+  require((emission.array() >= 0).all() && emission.allFinite(), "emission must be finite and not negative");
+  require(options.tolerance > 0, "tolerance must be positive");
+  require(!options.error || *options.error > 0, "error must be positive");
+  require(options.max_iterations >= 1, "max_iterations must be 1 or more");
+  require(options.restart >= 1, "restart must be 1 or more");
+  require(!options.bounces || *options.bounces >= 0, "bounces must be 0 or more");
+}
+
+Method choose(const RadiositySystem& system, const SolveOptions& options) {
+  if (options.bounces) return Method::neumann;
+  if (!system.transport().symmetric()) return Method::gmres;
+  if (system.transport().entries() && system.size() <= size_for_cholesky) {
+    for (const auto& group : system.groups_of_equal_reflectance()) {
+      if (static_cast<Eigen::Index>(group.size()) < columns_for_cholesky) return Method::cg;
+    }
+    return system.columns() > 0 ? Method::cholesky : Method::cg;
+  }
+  return Method::cg;
+}
+
+void check_method(Method method, const TransportOperator& transport, const SolveOptions& options) {
+  const std::string word(name(method));
+  const bool on_symmetric = method == Method::cg || method == Method::cholesky;
+  require(!on_symmetric || transport.symmetric(), word + " needs a symmetric operator; gmres does not");
+  const bool on_entries = method == Method::cholesky || method == Method::lu ||
+                          method == Method::gauss_seidel || method == Method::symmetric_gauss_seidel ||
+                          method == Method::southwell;
+  require(!on_entries || transport.entries(), word + " needs an operator with entries, such as dense");
+  require(!options.bounces || method == Method::neumann, "bounces are for neumann, not for " + word);
+}
+
+PatchField run(const RadiositySystem& system, PatchField start, const SolveOptions& options, Method method,
+               IterationWatch& watch) {
+  switch (method) {
+    case Method::cholesky:
+      return cholesky(system, std::move(start), watch);
+    case Method::lu:
+      return lu(system, std::move(start), watch);
+    case Method::gmres:
+      return gmres(system, std::move(start), options.restart, watch);
+    case Method::neumann:
+      return options.bounces ? neumann_bounces(system, *options.bounces, watch)
+                             : neumann(system, std::move(start), watch);
+    case Method::gauss_seidel:
+      return gauss_seidel(system, std::move(start), false, watch);
+    case Method::symmetric_gauss_seidel:
+      return gauss_seidel(system, std::move(start), true, watch);
+    case Method::southwell:
+      return southwell(system, std::move(start), watch);
+    default:
+      return cg(system, std::move(start), watch);
+  }
+}
+
+}  // namespace
+
+RadiositySolution solve(const TransportOperator& transport, const PatchField& reflectance,
+                        const PatchField& emission, const SolveOptions& options) {
+  check(transport, reflectance, emission, options);
+  const RadiositySystem system(transport, reflectance, emission);
+  const Method method = options.method == Method::automatic ? choose(system, options) : options.method;
+  check_method(method, transport, options);
+  // a number of bounces is defined whether or not their sum is
+  if (!options.bounces) refuse_singular(system);
+
+  RadiositySolution solution;
+  SolveReport& report = solution.report;
+  report.method = method;
+  solution.radiosity = emission;
+  solution.irradiance = PatchField::Zero(emission.rows(), emission.cols());
+  if (emission.size() == 0 || emission.maxCoeff() == 0) {
+    report.converged = true;
+    report.error_bound = 0;
+    return solution;
+  }
+
+  ErrorBound bound(system);
+  if (bound.worth_sharpening()) bound.sharpen();
+  IterationWatch watch(system, options, &bound, report);
+  PatchField residual;
+  for (int start = 0; start <= fresh_starts; ++start) {
+    solution.radiosity = run(system, std::move(solution.radiosity), options, method, watch);
+    solution.irradiance = system.apply(solution.radiosity);
+    residual = system.residual(solution.radiosity, solution.irradiance);
+    report.relative_residual = system.relative_norms(residual).maxCoeff();
+    report.error_bound = bound.relative(residual, solution.radiosity);
+    report.converged = watch.satisfied(residual, solution.radiosity);
+    if (report.converged || report.stopped != Stopped::converged) break;
+    watch.tighten();
+  }
+  if (!report.converged && report.stopped == Stopped::converged) {
+    watch.stop(Stopped::stagnated, "the residual measured anew stays above what was asked, at rounding");
+  }
+  if (report.converged && report.stopped != Stopped::bounces && report.stopped != Stopped::caller) {
+    watch.stop(Stopped::converged, {});
+  }
+  if (!bound.exists()) {
+    if (!report.message.empty()) report.message += "; ";
+    report.message +=
+        "no error bound: some row of the operator times its reflectance reaches 1, and no test "
+        "vector proves the series to converge";
+  }
+  return solution;
+}
+
+}  // namespace luxel

@@ -1,0 +1,128 @@
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "luxel/dense_operator.h"
+#include "transport/row_scaling.h"
+#include "transport/symmetric_product.h"
+
+namespace luxel {
+
+namespace {
+
+// Row error that a scaled enclosure may keep; what is left then is rounding and goes to the diagonal.
+constexpr double closed_within = 1e-12;
+
+/// G_ij <- d_i d_j G_ij, never above what either patch can send; the largest |d_i d_j - 1| of an entry.
+template <class Real>
+double scale_entries(ExchangeMatrix& matrix, const std::vector<double>& areas, const std::vector<double>& d) {
+  return tbb::parallel_reduce(
+      tbb::blocked_range<int>(0, matrix.size(), 64), 0.0,
+      [&](const tbb::blocked_range<int>& range, double largest) {
+        for (int i = range.begin(); i < range.end(); ++i) {
+          Real* row = matrix.row<Real>(i);
+          for (int j = 0; j < i; ++j) {
+            const double factor = d[i] * d[j];
+            if (row[j] == 0 || factor == 1) continue;
+            largest = std::max(largest, std::abs(factor - 1));
+            row[j] = static_cast<Real>(row[j] * factor);
+            const double most = std::min(areas[i], areas[j]);
+            if (row[j] > most) row[j] = std::nextafter(static_cast<Real>(most), Real(0));
+          }
+        }
+        return largest;
+      },
+      [](double a, double b) { return std::max(a, b); });
+}
+
+double scale_entries(ExchangeMatrix& matrix, const std::vector<double>& areas, const std::vector<double>& d) {
+  return matrix.precision() == Precision::float32 ? scale_entries<float>(matrix, areas, d)
+                                                  : scale_entries<double>(matrix, areas, d);
+}
+
+std::vector<double> row_sums(const ExchangeMatrix& matrix, const std::vector<double>& areas) {
+  const std::vector<double> ones(areas.size(), 1.0);
+  std::vector<double> sums(areas.size());
+  symmetric_product(matrix, ones.data(), sums.data(), 1);
+  for (std::size_t i = 0; i < sums.size(); ++i) sums[i] /= areas[i];
+  return sums;
+}
+
+/// Takes the enclosures that did worst out of `active`, and says so in one sentence.
+std::string give_up_worst(const RowScaling& scaling, const Enclosures& enclosures,
+                          std::vector<char>& active) {
+  const double worst = *std::max_element(scaling.errors.begin(), scaling.errors.end());
+  std::vector<char> lost(enclosures.count);
+  int first = -1;
+  for (std::size_t i = 0; i < active.size(); ++i) {
+    if (!active[i] || !(scaling.errors[i] >= worst / 2)) continue;
+    lost[enclosures.enclosure[i]] = 1;
+    if (first < 0) first = static_cast<int>(i);
+  }
+  for (std::size_t i = 0; i < active.size(); ++i) {
+    if (lost[enclosures.enclosure[i]]) active[i] = 0;
+  }
+  return "the rows of the enclosure of patch " + std::to_string(first) +
+         " cannot be closed by factors within [1/4, 4] and were left as they are";
+}
+
+}  // namespace
+
+RowSumError row_sum_error(std::span<const double> row_sums, std::span<const double> areas,
+                          const Enclosures& enclosures) {
+  RowSumError error;
+  double squares = 0, total = 0;
+  for (std::size_t i = 0; i < row_sums.size(); ++i) {
+    const double off = std::abs(row_sums[i] + enclosures.open_share[i] + enclosures.back_share[i] - 1);
+    error.max = std::max(error.max, off);
+    squares += areas[i] * off * off;
+    total += areas[i];
+  }
+  if (total > 0) error.rms = std::sqrt(squares / total);
+  return error;
+}
+
+ClosedOperator close_rows(ExchangeMatrix exchange_areas, std::vector<double> areas,
+                          const Enclosures& enclosures, const Progress& progress) {
+  const std::size_t size = exchange_areas.size();
+  if (areas.size() != size || enclosures.enclosure.size() != size) {
+    throw std::invalid_argument("close_rows: areas and enclosures need one entry for each patch");
+  }
+  ClosureReport report;
+  std::vector<double> sums = row_sums(exchange_areas, areas);
+  report.before = row_sum_error(sums, areas, enclosures);
+
+  // rows of closed enclosures; one that sees nobody has nothing to scale
+  std::vector<char> active(size);
+  for (std::size_t i = 0; i < size; ++i) {
+    active[i] = enclosures.enclosure_closed[enclosures.enclosure[i]] && sums[i] > 0;
+  }
+  const auto any_active = [&] { return std::find(active.begin(), active.end(), 1) != active.end(); };
+  std::vector<double> diagonal(size, 0.0);
+  while (any_active()) {
+    const RowScaling scaling = scale_rows(exchange_areas, areas, active, progress);
+    report.iterations += scaling.iterations;
+    if (*std::max_element(scaling.errors.begin(), scaling.errors.end()) > closed_within) {
+      report.message = give_up_worst(scaling, enclosures, active);
+      continue;
+    }
+    report.applied = true;
+    report.largest_correction = scale_entries(exchange_areas, areas, scaling.factors);
+    sums = row_sums(exchange_areas, areas);
+    for (std::size_t i = 0; i < size; ++i) {
+      if (active[i]) diagonal[i] = areas[i] - sums[i] * areas[i];
+    }
+    break;
+  }
+  auto transport =
+      std::make_unique<DenseOperator>(std::move(exchange_areas), std::move(areas), std::move(diagonal));
+  report.after = row_sum_error(transport->row_sums(), transport->areas(), enclosures);
+  return {std::move(transport), report};
+}
+
+}  // namespace luxel
