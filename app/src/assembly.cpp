@@ -28,18 +28,18 @@ void add_rows(const ExchangeMatrix& exchange, std::vector<double>& sums) {
 RowErrors row_errors(const ExchangeMatrix& exchange, const std::vector<double>& areas,
                      const Enclosures& enclosures) {
   RowErrors errors;
-  errors.signed_error.assign(areas.size(), 0.0);
+  errors.of_patch.assign(areas.size(), 0.0);
   if (exchange.precision() == Precision::float32) {
-    add_rows<float>(exchange, errors.signed_error);
+    add_rows<float>(exchange, errors.of_patch);
   } else {
-    add_rows<double>(exchange, errors.signed_error);
+    add_rows<double>(exchange, errors.of_patch);
   }
   double total = 0;
   for (std::size_t i = 0; i < areas.size(); ++i) {
-    double& error = errors.signed_error[i];
-    error = error / areas[i] + enclosures.open_share[i] + enclosures.back_share[i] - 1;
-    const double certain = std::max(0.0, std::abs(error) - 3 * enclosures.share_error[i]);
-    errors.max = std::max(errors.max, std::abs(error));
+    double& error = errors.of_patch[i];
+    error = std::abs(error / areas[i] + enclosures.open_share[i] + enclosures.back_share[i] - 1);
+    const double certain = std::max(0.0, error - 3 * enclosures.share_error[i]);
+    errors.max = std::max(errors.max, error);
     errors.certain_max = std::max(errors.certain_max, certain);
     errors.rms += areas[i] * error * error;
     errors.certain_rms += areas[i] * certain * certain;

@@ -11,8 +11,8 @@ namespace luxel::app {
 
 /// How far the raw row of each patch is from what it should be.
 struct RowErrors {
-  std::vector<double>
-      signed_error;        ///< N: s_i + open_i + back_i - 1, open and back measured by rays of their own
+  /// N: |s_i + open_i + back_i - 1|, open and back measured by rays of their own.
+  std::vector<double> of_patch;
   double max = 0;          ///< largest magnitude
   double rms = 0;          ///< area-weighted
   double certain_max = 0;  ///< largest magnitude beyond three standard errors of the measured shares

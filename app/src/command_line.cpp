@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <functional>
+#include <sstream>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 
 #include "luxel/input_error.h"
@@ -21,6 +23,21 @@ constexpr const char* solving = "Solving";
 constexpr const char* output = "Output";
 constexpr const char* resources = "Resources";
 
+// The formatter breaks descriptions only where they have a line break.
+std::string wrapped(const std::string& text) {
+  constexpr std::size_t width = 82;  // beside the 30 columns of the names: 112 in all
+  std::string result;
+  std::size_t column = 0;
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    const bool breaks = column > 0 && column + 1 + word.size() > width;
+    if (column > 0) result += breaks ? '\n' : ' ';
+    column = breaks ? word.size() : column + (column > 0) + word.size();
+    result += word;
+  }
+  return result;
+}
+
 [[noreturn]] void refuse(const std::string& option, const std::string& found, const std::string& expected) {
   throw InputError(fmt::format("{}: found '{}', expected {}", option, found, expected));
 }
@@ -36,7 +53,7 @@ CLI::Option* value_option(CLI::App& app, const std::string& names, const char* t
           [=](const std::string& text) {
             if (!accept(text)) refuse(shown, text, expected);
           },
-          description)
+          wrapped(description))
       ->type_name(type);
 }
 
@@ -160,7 +177,7 @@ void add_solver(CLI::App& app, SolveOptions& options) {
 }
 
 void add_outputs(CLI::App& app, std::vector<std::string>& outputs, const char* description) {
-  app.add_option("-o,--output", outputs, description)
+  app.add_option("-o,--output", outputs, wrapped(description))
       ->type_name("FILE")
       ->allow_extra_args(false)
       ->group(output);
@@ -170,7 +187,7 @@ void add_outputs(CLI::App& app, std::vector<std::string>& outputs, const char* d
 std::vector<std::string> option_names(const CLI::App& app) {
   std::vector<std::string> names;
   for (const CLI::Option* option : app.get_options()) {
-    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    for (const std::string& name : option->get_lnames()) names.push_back(fmt::format("--{}", name));
   }
   return names;
 }
@@ -196,24 +213,37 @@ void check_scene(const CLI::App& app, const SceneOptions& scene) {
   }
 }
 
+std::vector<std::string> command_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    names.push_back(command->get_name());
+  }
+  return names;
+}
+
 // What is typed after `luxel`, where it is no command.
-[[noreturn]] void refuse_command(const std::string& typed) {
-  static const std::vector<std::string> commands = {"solve", "factors", "inspect"};
-  static const std::vector<std::string> later = {"compare", "stress", "render"};
+[[noreturn]] void refuse_command(const CLI::App& app, const std::string& typed) {
+  static const std::vector<std::string> later = {"compare", "stress", "render", "factors"};
+  const std::vector<std::string> names = command_names(app);
   if (std::find(later.begin(), later.end(), typed) != later.end()) {
-    throw InputError("the command '" + typed + "' is not part of this version");
+    throw InputError(fmt::format("the command '{}' is not part of this version", typed));
   }
   if (!typed.empty() && typed[0] == '-') {
     throw InputError(fmt::format("unknown option '{}' before the command (see luxel --help)", typed));
   }
-  throw InputError(fmt::format("unknown command '{}'{} (expected solve, factors or inspect)", typed,
-                               suggestion(typed, commands)));
+  throw InputError(fmt::format("unknown command '{}'{} (expected {})", typed, suggestion(typed, names),
+                               fmt::join(names, ", ")));
+}
+
+void check_bounces(const SolveOptions& options) {
+  if (!options.bounces || options.method == Method::automatic || options.method == Method::neumann) return;
+  throw InputError(
+      fmt::format("solve: found --bounces with --solver {}, expected neumann", name(options.method)));
 }
 
 constexpr const char* main_footer =
     "\nExamples:\n"
     "  luxel solve room.obj -o room.vtp -o room.png     light for ParaView, and a picture\n"
-    "  luxel factors room.obj --by group                form factors between the groups\n"
     "  luxel inspect room.obj                           what is in it and what is wrong with it\n"
     "\nluxel COMMAND --help tells the rest. Lengths are in metres, radiosity, irradiance and emission in "
     "W/m2.\n"
@@ -250,10 +280,13 @@ Command parse_command_line(int argc, const char* const* argv) {
   app.set_version_flag("--version", version_text(), "Print version and licence and stop");
   app.allow_extras();
   app.require_subcommand(0, 1);
+  app.get_formatter()->column_width(30);
+  app.get_formatter()->label("SUBCOMMAND", "COMMAND");
   app.footer(main_footer);
 
   SolveCommand solve;
-  CLI::App* solve_app = app.add_subcommand("solve", "Light every patch: the main job")->allow_extras();
+  CLI::App* solve_app = app.add_subcommand("solve", "Light every patch: the main job");
+  solve_app->allow_extras()->group("Commands");
   add_scene(*solve_app, solve.scene);
   add_outputs(*solve_app, solve.outputs,
               "Write this file, by its extension .vtp .pvd .csv .json .png .exr or .hdr; may be given again");
@@ -266,8 +299,8 @@ Command parse_command_line(int argc, const char* const* argv) {
 
   InspectCommand inspect;
   CLI::App* inspect_app =
-      app.add_subcommand("inspect", "Tell what is in a scene, what is wrong with it and what it needs")
-          ->allow_extras();
+      app.add_subcommand("inspect", "Tell what is in a scene, what is wrong with it and what it needs");
+  inspect_app->allow_extras()->group("Commands");
   add_scene(*inspect_app, inspect.scene);
   add_general(*inspect_app, inspect.general);
   inspect_app->footer(inspect_footer);
@@ -276,24 +309,25 @@ Command parse_command_line(int argc, const char* const* argv) {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {
     const auto chosen = app.get_subcommands();
-    return ShowText{chosen.empty() ? app.help()
-                                   : chosen.front()->help("luxel " + chosen.front()->get_name())};
+    return ShowText{chosen.empty() ? app.help() : chosen.front()->help("luxel")};
   } catch (const CLI::CallForVersion&) {
     return ShowText{version_text()};
   } catch (const CLI::ParseError& error) {
     throw InputError(error.what());
   }
 
-  if (!app.remaining().empty()) refuse_command(app.remaining().front());
+  if (!app.remaining().empty()) refuse_command(app, app.remaining().front());
   if (*solve_app) {
     check_scene(*solve_app, solve.scene);
+    check_bounces(solve.solve);
     return solve;
   }
   if (*inspect_app) {
     check_scene(*inspect_app, inspect.scene);
     return inspect;
   }
-  throw InputError("no command given (expected solve, factors or inspect; see luxel --help)");
+  throw InputError(
+      fmt::format("no command given (expected {}; see luxel --help)", fmt::join(command_names(app), ", ")));
 }
 
 }  // namespace luxel::app
