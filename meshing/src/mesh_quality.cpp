@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "angle.h"
 #include "polygon.h"
@@ -41,7 +42,8 @@ void measure_quality(PatchMesh& mesh, const Facets& facets) {
     // In-radius of a polygon that has an inscribed circle: 2 A / perimeter. Scaled by the equilateral
     // triangle.
     const double in_radius = 2 * mesh.areas[i] / perimeter;
-    aspect = std::max(aspect, longest_edge(loop) / in_radius / (2 * std::sqrt(3.0)));
+    const double regular = 2 * std::tan(std::numbers::pi / count);
+    aspect = std::max(aspect, longest_edge(loop) / in_radius / regular);
     area += mesh.areas[i];
   }
   MeshReport& report = mesh.report;

@@ -9,6 +9,9 @@
 #include "mesh_quality.h"
 #include "occluders.h"
 #include "patch_builder.h"
+#include "patch_limit.h"
+#include "sized.h"
+#include "t_junctions.h"
 
 namespace luxel {
 
@@ -32,11 +35,19 @@ void tell(const Progress& progress, double done) {
   if (progress && !progress("meshing", done, 1)) throw Cancelled();
 }
 
-void refuse_too_many(const Scene& scene, double count, int limit) {
-  if (count <= limit) return;
-  throw InputError((scene.file.empty() ? "" : scene.file + ": ") + "about " +
-                   std::to_string(static_cast<long long>(count)) +
-                   " patches would result, expected at most " + std::to_string(limit));
+/// Whether the faces become patches unchanged: asked for, or because the input is finer than what is asked.
+bool keeps_faces(const MeshingOptions& options, std::size_t face_patches,
+                 std::vector<std::string>& warnings) {
+  if (options.as_is) return true;
+  if (options.patch_size > 0) return false;
+  const int wanted = options.patches > 0 ? options.patches : MeshingOptions::default_patches;
+  if (face_patches <= static_cast<std::size_t>(wanted)) return false;
+  if (options.patches > 0) {
+    warnings.push_back("the faces give " + std::to_string(face_patches) +
+                       " patches as they are, more than the " + std::to_string(wanted) +
+                       " asked for; they are kept, since faces are never merged into larger patches");
+  }
+  return true;
 }
 
 }  // namespace
@@ -46,13 +57,23 @@ PatchMesh mesh_scene(const Scene& scene, const MeshingOptions& options, const Pr
   validate(scene);
   tell(progress, 0);
   const Facets facets = make_facets(scene);
-  refuse_too_many(scene, static_cast<double>(count_patches(facets)), options.max_patches);
   PatchMesh mesh = empty_mesh(scene);
   mesh.warnings.insert(mesh.warnings.end(), facets.warnings.begin(), facets.warnings.end());
-  FacetOccluders blocking = make_occluders(facets);
+  const std::size_t face_patches = count_patches(facets);
+  const bool as_is = keeps_faces(options, face_patches, mesh.warnings);
+  if (as_is) refuse_too_many(scene, static_cast<double>(face_patches), options.max_patches);
+
+  const RepairedFacets repaired = repair_t_junctions(facets);
+  FacetOccluders blocking = make_occluders(repaired.facets);
   mesh.occluders = std::move(blocking.occluders);
-  append_facets(mesh, scene, facets, blocking.polygon_of_facet);
+  if (as_is) {
+    append_facets(mesh, scene, facets, blocking.polygon_of_facet);
+  } else {
+    append_sized(mesh, scene, repaired.facets, blocking.polygon_of_facet, options, progress);
+    mesh.report.repaired_t_junctions = repaired.repaired;
+  }
   measure_quality(mesh, facets);
+  mesh.report.remaining_t_vertices = count_t_vertices(mesh);
   tell(progress, 1);
   return mesh;
 }

@@ -2,59 +2,11 @@
 
 #include <algorithm>
 
-#include "flat_polygons.h"
-#include "polygon.h"
-#include "triangulate.h"
+#include "merged_polygons.h"
 
 namespace luxel {
 
 namespace {
-
-using Triangles = std::vector<std::array<int, 3>>;
-
-/// Triangles of the facets of one region, over the facets' vertices.
-Triangles facet_triangles(const Facets& facets, std::span<const int> members) {
-  Triangles triangles;
-  for (const int facet : members) {
-    const auto loop = facets.loop(facet);
-    for (const auto& [a, b, c] : triangulate_loop(facets.points(facet))) {
-      triangles.push_back({loop[a], loop[b], loop[c]});
-    }
-  }
-  return triangles;
-}
-
-/// Triangles of a polygon over the facets' vertices; nothing if its border crosses itself.
-class PolygonTriangulator {
- public:
-  explicit PolygonTriangulator(const Facets& facets) : facets_(facets), place_(facets.vertices.size(), -1) {}
-
-  std::optional<Triangles> triangulate(const Frame& frame, std::span<const std::array<int, 2>> border) {
-    PlanarDomain domain;
-    std::vector<int> vertices;
-    for (const auto& segment : border) {
-      for (const int v : segment) {
-        if (place_[v] >= 0) continue;
-        place_[v] = static_cast<int>(vertices.size());
-        vertices.push_back(v);
-        domain.points.push_back(frame.flat(facets_.vertices[v]));
-      }
-      domain.borders.push_back({place_[segment[0]], place_[segment[1]]});
-    }
-    std::optional<Triangles> triangles = luxel::triangulate(domain);
-    if (triangles) {
-      for (auto& triangle : *triangles) {
-        for (int& corner : triangle) corner = vertices[corner];
-      }
-    }
-    for (const int v : vertices) place_[v] = -1;
-    return triangles;
-  }
-
- private:
-  const Facets& facets_;
-  std::vector<int> place_;  // of a vertex in the domain at hand
-};
 
 /// The same polygons from whichever side: each border as its sorted, undirected segments.
 RepeatedLoops find_coincident(const FlatPolygons& polygons) {
@@ -72,43 +24,11 @@ RepeatedLoops find_coincident(const FlatPolygons& polygons) {
   return find_repeated(keys);
 }
 
-struct TriangulatedPolygons {
-  FlatPolygons polygons;
-  std::vector<Triangles> triangles;  ///< empty for single triangles, which are their own
-};
-
-/// Merges, triangulates, and where a border cannot be triangulated falls back to the facets of that region,
-/// whose vertices its neighbours then keep too.
-TriangulatedPolygons triangulate_regions(const Facets& facets, const Regions& regions, const EdgeTable& edges,
-                                         const std::vector<Vec3>& areas) {
-  PolygonTriangulator triangulator(facets);
-  std::vector<char> irregular;
-  for (;;) {
-    TriangulatedPolygons result;
-    result.polygons = make_flat_polygons(facets, areas, edges, regions, irregular);
-    result.triangles.resize(regions.size());
-    irregular = result.polygons.irregular;
-    bool failed = false;
-    for (int r = 0; r < regions.size(); ++r) {
-      const auto members = regions[r];
-      std::optional<Triangles> triangles;
-      if (!irregular[r] && (members.size() > 1 || facets.loop(members[0]).size() > 4)) {
-        triangles = triangulator.triangulate(result.polygons.frames[r], result.polygons.border(r));
-        if (!triangles) irregular[r] = failed = true;
-      }
-      result.triangles[r] = triangles ? *std::move(triangles) : facet_triangles(facets, members);
-    }
-    if (!failed) return result;
-  }
-}
-
 }  // namespace
 
 FacetOccluders make_occluders(const Facets& facets) {
-  const EdgeTable edges(facets.loops, static_cast<int>(facets.vertices.size()));
-  const std::vector<Vec3> areas = facet_areas(facets);
-  const Regions regions = grow_regions(facets, areas, edges, [](int, int) { return true; });
-  const TriangulatedPolygons merged = triangulate_regions(facets, regions, edges, areas);
+  const MergedPolygons merged = merge_facets(facets, [](int, int) { return true; });
+  const Regions& regions = merged.regions;
   const RepeatedLoops repeated = find_coincident(merged.polygons);
 
   FacetOccluders result;

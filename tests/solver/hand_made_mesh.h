@@ -1,7 +1,9 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
+#include <map>
 #include <vector>
 
 #include "luxel/patch_mesh.h"
@@ -20,6 +22,7 @@ inline PatchMesh hand_made_mesh(const std::vector<Vec3>& vertices,
   mesh.material_names = {"default"};
   mesh.finish_table.resize(1);
   mesh.occluders.vertices = vertices;
+  std::map<std::array<int, 4>, int> polygon_of;
   for (int i = 0; i < mesh.size(); ++i) {
     const auto& c = faces[i];
     const bool quad = c[3] >= 0;
@@ -39,15 +42,19 @@ inline PatchMesh hand_made_mesh(const std::vector<Vec3>& vertices,
     mesh.groups.push_back(0);
     mesh.materials.push_back(0);
     mesh.finishes.push_back(0);
-    mesh.polygons.push_back(i);
+    auto key = c;
+    std::sort(key.begin(), key.end());
+    const auto [known, is_new] = polygon_of.try_emplace(key, mesh.occluders.polygon_count);
+    mesh.polygons.push_back(known->second);
+    if (!is_new) continue;
     mesh.occluders.triangles.push_back({c[0], c[1], c[2]});
-    mesh.occluders.polygons.push_back(i);
+    mesh.occluders.polygons.push_back(known->second);
     if (quad) {
       mesh.occluders.triangles.push_back({c[0], c[2], c[3]});
-      mesh.occluders.polygons.push_back(i);
+      mesh.occluders.polygons.push_back(known->second);
     }
+    ++mesh.occluders.polygon_count;
   }
-  mesh.occluders.polygon_count = mesh.size();
   return mesh;
 }
 

@@ -30,10 +30,10 @@ struct Image {
 };
 
 struct ImageOptions {
-  std::optional<ToneMap> tone_map;  ///< of .png; without it tone_map_for(image)
+  std::optional<ToneMap> tone_map = std::nullopt;  ///< of .png; without it tone_map_for(image)
   /// Written into .exr and .png as text, in this order: {"Software", "luxel 1.0"}, {"luxel:scene",
   /// "room.obj"}, ...
-  std::vector<std::pair<std::string, std::string>> metadata;
+  std::vector<std::pair<std::string, std::string>> metadata = {};
 };
 
 /// The tone map for the image's pixels, all weighing the same.

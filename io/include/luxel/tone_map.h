@@ -11,7 +11,7 @@ namespace luxel {
 /// Luminance of a linear Rec. 709 colour, in the colour's own unit: 0.2126 R + 0.7152 G + 0.0722 B.
 double luminance(const Rgb& colour);
 
-/// From radiance to the 8-bit sRGB of a screen: exposure, a curve that is straight up to 0.7 and bends softly
+/// From radiance to the 8-bit sRGB of a screen: exposure, a curve that is straight up to 0.6 and bends softly
 /// towards 1 above, and the sRGB transfer function (IEC 61966-2-1). The curve works on luminance, so hues
 /// stay; a colour too saturated for its brightness is mixed with grey of the same luminance until it fits.
 struct ToneMap {
@@ -24,7 +24,7 @@ struct ToneMap {
 };
 
 /// The tone map that brings the luminance which 90 % of what is lit does not exceed to the end of the curve's
-/// straight part, 0.7; but where this leaves the median of what is lit below 0.05, the one that brings the
+/// straight part, 0.6; but where this leaves the median of what is lit below 0.05, the one that brings the
 /// median there. Zeros do not count, nor does what is not finite; exposure 1 where nothing is lit.
 /// @param luminances  of pixels or patches
 /// @param weights     as many (patch areas), or none: all equal

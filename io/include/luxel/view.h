@@ -20,7 +20,7 @@ struct ViewOptions {
 
 /// A perspective view of the solved patches: radiance B / pi, interpolated linearly between the Gouraud
 /// vertices (a quad as the two triangles 0 1 2 and 0 2 3). The same bits for any number of threads. Cost:
-/// about 0.4 us a ray.
+/// about 0.12 CPU us a ray, 1 s for 800 x 600 pixels with 16 samples.
 /// @param vertex_radiosity  V x 3 [W/m2], from interpolate_to_vertices
 /// @throws std::invalid_argument for a camera without direction, an `up` along it, a field of view outside
 /// (0, 180), less than one pixel or more than 2^28, samples out of range, or fields of the wrong shape;

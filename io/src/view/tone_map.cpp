@@ -10,9 +10,9 @@ namespace luxel {
 
 namespace {
 
-// End of the curve's straight part: a diffuse scene is shown in its true proportions, 15 % of the screen's
-// range (in sRGB) is left for lamps and what is close to them
-constexpr double shoulder = 0.7;
+// End of the curve's straight part: a diffuse scene is shown in its true proportions, the fifth of the
+// screen's range above (in sRGB) is left for lamps and what is close to them
+constexpr double shoulder = 0.6;
 
 constexpr double bright_share = 0.9;
 

@@ -1,3 +1,5 @@
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,6 +14,10 @@ namespace {
 // Share of the total area by which fronts must look to one side for it to be the open one: above what
 // rounding and windows give, below a box that lacks one of its six sides (1/5)
 constexpr double open_side = 0.05;
+
+// Closer to an axis than this [cosine, 37 degrees], the open side is taken to be that axis: upright walls
+// stay upright in the picture
+constexpr double near_axis = 0.8;
 
 // Room left around the scene in the picture
 constexpr double margin = 1.05;
@@ -35,6 +41,12 @@ Vec3 mean_normal(const PatchMesh& mesh) {
   Vec3 sum = Vec3::Zero();
   for (int i = 0; i < mesh.size(); ++i) sum += mesh.areas[i] * mesh.normals[i];
   return sum / total_area(mesh);
+}
+
+Vec3 snapped(const Vec3& direction) {
+  int axis = 0;
+  const double largest = direction.cwiseAbs().maxCoeff(&axis);
+  return largest < near_axis ? direction : Vec3(std::copysign(1.0, direction[axis]) * Vec3::Unit(axis));
 }
 
 // Distance from the centre along `towards` at which every corner of the box is in the picture
@@ -71,7 +83,7 @@ Camera view_camera(const PatchMesh& mesh, int width, int height) {
   if (mesh.vertices.empty()) return camera;
   const Box box = bounding_box(mesh.vertices);
   const Vec3 open = mean_normal(mesh);
-  const Vec3 towards = open.norm() > open_side ? open.normalized() : best_wall(box, camera);
+  const Vec3 towards = open.norm() > open_side ? snapped(open.normalized()) : best_wall(box, camera);
   // seen straight from above or below, north is up
   if (std::abs(towards[1]) > 0.99) camera.up = Vec3(0, 0, -1);
   camera.target = box.centre();

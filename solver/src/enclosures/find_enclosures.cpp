@@ -1,13 +1,19 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <cmath>
 #include <stdexcept>
 
+#include "enclosures/cells.h"
 #include "enclosures/hemisphere_rays.h"
+#include "enclosures/rim_lines.h"
+#include "enclosures/shells.h"
+#include "enclosures/triangle_soup.h"
 #include "enclosures/union_find.h"
 #include "luxel/enclosures.h"
 #include "patch_locator.h"
@@ -57,6 +63,31 @@ std::vector<Met> look_around(const PatchMesh& mesh, const RayScene& occluders, c
   return met;
 }
 
+/// The cell that each patch looks into; -1 where its polygon's side bounds several.
+std::vector<int> cells_of_patches(const PatchMesh& mesh, const Cells& cells) {
+  const Occluders& occluders = mesh.occluders;
+  constexpr int none = -2, several = -1;
+  std::vector<std::array<int, 2>> of_polygon(occluders.polygon_count, {none, none});
+  std::vector<Vec3> normals(occluders.polygon_count, Vec3::Zero());
+  for (std::size_t t = 0; t < occluders.triangles.size(); ++t) {
+    const int p = occluders.polygons[t];
+    const auto& [a, b, c] = occluders.triangles[t];
+    const Vec3& origin = occluders.vertices[a];
+    normals[p] += (occluders.vertices[b] - origin).cross(occluders.vertices[c] - origin);
+    for (int side = 0; side < 2; ++side) {
+      int& known = of_polygon[p][side];
+      const int cell = cells.cell[2 * t + side];
+      known = known == none || known == cell ? cell : several;
+    }
+  }
+  std::vector<int> result(mesh.size());
+  for (int i = 0; i < mesh.size(); ++i) {
+    const int p = mesh.polygons[i];
+    result[i] = std::max(several, of_polygon[p][mesh.normals[i].dot(normals[p]) > 0 ? 0 : 1]);
+  }
+  return result;
+}
+
 /// Standard error of the share of rays that met no front, from the scatter between runs.
 double share_error(const std::vector<Met>& met) {
   std::array<double, runs> lost{}, total{};
@@ -82,24 +113,49 @@ Enclosures find_enclosures(const PatchMesh& mesh, const RayScene& occluders, int
   result.back_share.assign(size, 0.0);
   result.share_error.assign(size, 0.0);
 
-  const PatchLocator locator(mesh);
+  const TriangleSoup soup(mesh.occluders, occluders);
+  const Shells shells = find_shells(soup);
+  const Cells cells = find_cells(soup, shells, lit_sides(mesh), occluders);
+  const std::vector<int> cell = cells_of_patches(mesh, cells);
+  const auto proof = [&](int i) { return cell[i] < 0 ? Proof::none : cells.proof[cell[i]]; };
+
+  // patches of a closed cell see each other, if not at once then by way of others
   UnionFind sets(size);
-  StageProgress stage(progress, "enclosures", std::max(size, 1));
-  tbb::parallel_for(tbb::blocked_range<int>(0, size, 16), [&](const tbb::blocked_range<int>& range) {
-    if (stage.cancelled()) return;
-    for (int i = range.begin(); i < range.end(); ++i) {
-      const std::vector<Met> met = look_around(mesh, occluders, locator, i, rays_per_patch, sets);
-      const auto open = std::count(met.begin(), met.end(), Met::nothing);
-      const auto back = std::count(met.begin(), met.end(), Met::back);
-      if (open + back == 0) continue;
-      result.open_share[i] = static_cast<double>(open) / rays_per_patch;
-      result.back_share[i] = static_cast<double>(back) / rays_per_patch;
-      result.share_error[i] = share_error(met);
-    }
-    stage.add(range.size());
-  });
-  stage.finish();
-  result.rays = static_cast<std::int64_t>(size) * rays_per_patch;
+  std::vector<int> first_of_cell(cells.count, -1);
+  for (int i = 0; i < size; ++i) {
+    if (proof(i) != Proof::closed) continue;
+    int& first = first_of_cell[cell[i]];
+    if (first < 0) first = i;
+    sets.join(first, i);
+  }
+
+  std::vector<int> doubtful;
+  for (int i = 0; i < size; ++i) {
+    if (proof(i) != Proof::closed) doubtful.push_back(i);
+  }
+  const int doubts = static_cast<int>(doubtful.size());
+  std::vector<char> leaks(size, 0);
+  if (doubts > 0) {
+    const PatchLocator locator(mesh);
+    StageProgress stage(progress, "enclosures", doubts);
+    tbb::parallel_for(tbb::blocked_range<int>(0, doubts, 16), [&](const tbb::blocked_range<int>& range) {
+      if (stage.cancelled()) return;
+      for (int k = range.begin(); k < range.end(); ++k) {
+        const int i = doubtful[k];
+        const std::vector<Met> met = look_around(mesh, occluders, locator, i, rays_per_patch, sets);
+        const auto open = std::count(met.begin(), met.end(), Met::nothing);
+        const auto back = std::count(met.begin(), met.end(), Met::back);
+        if (open + back == 0) continue;
+        result.open_share[i] = static_cast<double>(open) / rays_per_patch;
+        result.back_share[i] = static_cast<double>(back) / rays_per_patch;
+        result.share_error[i] = share_error(met);
+      }
+      stage.add(range.size());
+    });
+    stage.finish();
+    result.rays = static_cast<std::int64_t>(doubts) * rays_per_patch;
+    leaks = look_through_rims(mesh, soup, shells.rims, occluders, locator, sets);
+  }
 
   result.enclosure.resize(size);
   for (int i = 0; i < size; ++i) {
@@ -110,7 +166,8 @@ Enclosures find_enclosures(const PatchMesh& mesh, const RayScene& occluders, int
     } else {
       result.enclosure[i] = result.enclosure[root];
     }
-    if (result.open_share[i] + result.back_share[i] > 0) result.enclosure_closed[result.enclosure[i]] = 0;
+    const bool lost = result.open_share[i] + result.back_share[i] > 0;
+    if (lost || leaks[i] || proof(i) == Proof::open) result.enclosure_closed[result.enclosure[i]] = 0;
   }
   result.closed = size > 0 && std::all_of(result.enclosure_closed.begin(), result.enclosure_closed.end(),
                                           [](char closed) { return closed != 0; });

@@ -9,10 +9,10 @@ namespace {
 
 // Largest relative errors of pairs of equal squares in the least favourable position, times
 // (distance / edge)^(2 q). Measured; see docs/decisions/0006-unoccluded-form-factors.md.
-constexpr std::array<double, point_levels + 1> error_constant{0, 4.3e-2, 1.8e-3, 1.8e-3, 6.5e-4};
+constexpr std::array<double, point_levels + 1> error_constant{0, 8.0e-2, 4.5e-3, 1.5e-3, 1.5e-4};
 
 // Nearer than this the first term left out no longer tells the error.
-constexpr std::array<double, point_levels + 1> nearest{0, 2.5, 1.6, 1.4, 1.2};
+constexpr std::array<double, point_levels + 1> nearest{0, 3.0, 2.0, 1.6, 1.25};
 
 }  // namespace
 

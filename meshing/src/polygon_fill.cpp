@@ -1,0 +1,109 @@
+#include "polygon_fill.h"
+
+#include <algorithm>
+#include <unordered_set>
+
+#include "triangulate.h"
+
+namespace luxel {
+
+void PolygonFiller::divide(const Frame& frame, int a, int b, double edge_length,
+                           std::vector<Part>& parts) const {
+  const Vec2 start = frame.flat(corners_[a]);
+  const Vec2 d = frame.flat(corners_[b]) - start;
+  const int count = SharedEdges::parts(d.norm(), edge_length);
+  for (int k = 0; k < count; ++k) {
+    parts.push_back({start + d * (static_cast<double>(k) / count), start + d * ((k + 1.0) / count)});
+  }
+}
+
+PolygonFiller::Part PolygonFiller::longest_side(int p) const {
+  const Frame& frame = plan_.merged.polygons.frames[p];
+  Part longest = {Vec2::Zero(), Vec2::Zero()};
+  for (const auto& [a, b] : plan_.merged.polygons.border(p)) {
+    const Part side = {frame.flat(corners_[a]), frame.flat(corners_[b])};
+    if ((side[1] - side[0]).squaredNorm() > (longest[1] - longest[0]).squaredNorm()) longest = side;
+  }
+  return longest;
+}
+
+double PolygonFiller::count(int p, double edge_length) const {
+  const Frame& frame = plan_.merged.polygons.frames[p];
+  const auto border = plan_.merged.polygons.border(p);
+  std::vector<Part> border_parts, crease_parts;
+  std::unordered_set<int> on_border, inside;
+  for (const auto& [a, b] : border) {
+    divide(frame, a, b, edge_length, border_parts);
+    on_border.insert(a);
+  }
+  for (const auto& [a, b] : plan_.creases[p]) {
+    divide(frame, a, b, edge_length, crease_parts);
+    for (const int v : {a, b}) {
+      if (!on_border.contains(v)) inside.insert(v);
+    }
+  }
+  const HexagonalLattice lattice(border_parts, crease_parts, longest_side(p), edge_length);
+  // Euler: T = 2 V - E_border - 2 chi, with chi of the polygon from its coarsest triangulation.
+  const double twice_chi = 2.0 * static_cast<double>(on_border.size()) - static_cast<double>(border.size()) -
+                           static_cast<double>(plan_.merged.triangles[p].size());
+  const double added_on_border = static_cast<double>(border_parts.size() - border.size());
+  const double added_inside =
+      static_cast<double>(inside.size() + crease_parts.size() - plan_.creases[p].size());
+  const double vertices =
+      static_cast<double>(on_border.size() + lattice.size()) + added_on_border + added_inside;
+  return 2 * vertices - static_cast<double>(border_parts.size()) - twice_chi;
+}
+
+std::vector<std::array<int, 3>> PolygonFiller::fill(int p, double edge_length, std::vector<Vec3>& vertices) {
+  const Frame& frame = plan_.merged.polygons.frames[p];
+  place_.resize(vertices.size(), -1);
+  PlanarDomain domain;
+  std::vector<int> members;
+  const auto place = [&](int v) {
+    if (place_[v] < 0) {
+      place_[v] = static_cast<int>(members.size());
+      members.push_back(v);
+      domain.points.push_back(frame.flat(vertices[v]));
+    }
+    return place_[v];
+  };
+  const auto append = [&](int a, int b, std::vector<std::array<int, 2>>& list) {
+    const std::vector<int> points = plan_.edges.points(a, b);
+    for (std::size_t k = 0; k + 1 < points.size(); ++k) {
+      const int from = place(points[k]);
+      list.push_back({from, place(points[k + 1])});
+    }
+  };
+  for (const auto& [a, b] : plan_.merged.polygons.border(p)) append(a, b, domain.borders);
+  for (const auto& [a, b] : plan_.creases[p]) append(a, b, domain.creases);
+
+  const auto parts = [&](const std::vector<std::array<int, 2>>& list) {
+    std::vector<Part> result;
+    result.reserve(list.size());
+    for (const auto& [a, b] : list) result.push_back({domain.points[a], domain.points[b]});
+    return result;
+  };
+  const HexagonalLattice lattice(parts(domain.borders), parts(domain.creases), longest_side(p), edge_length);
+  for (const Vec2& point : lattice.points()) {
+    members.push_back(static_cast<int>(vertices.size()));
+    domain.points.push_back(point);
+    vertices.push_back(frame.lift(point));
+  }
+  std::optional<std::vector<std::array<int, 3>>> triangles = triangulate(domain);
+  if (!triangles) {
+    // Creases that meet at a very small angle can cross after rounding: the polygon is then filled without
+    // them.
+    domain.creases.clear();
+    triangles = triangulate(domain);
+  }
+  for (const int v : members) {
+    if (v < static_cast<int>(place_.size())) place_[v] = -1;
+  }
+  if (!triangles) return plan_.merged.triangles[p];
+  for (auto& triangle : *triangles) {
+    for (int& corner : triangle) corner = members[corner];
+  }
+  return *std::move(triangles);
+}
+
+}  // namespace luxel

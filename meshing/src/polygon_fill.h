@@ -1,0 +1,30 @@
+#pragma once
+
+#include "lattice.h"
+#include "surface_plan.h"
+
+namespace luxel {
+
+/// Fills the flat polygons of a plan with triangles.
+class PolygonFiller {
+ public:
+  PolygonFiller(const std::vector<Vec3>& corners, const SurfacePlan& plan) : corners_(corners), plan_(plan) {}
+
+  /// How many triangles fill(p) will make at this edge length, all edges divided evenly.
+  double count(int p, double edge_length) const;
+
+  /// Triangles over `vertices`, to which points inside are appended; the plan's edges are divided already.
+  std::vector<std::array<int, 3>> fill(int p, double edge_length, std::vector<Vec3>& vertices);
+
+ private:
+  using Part = std::array<Vec2, 2>;
+
+  void divide(const Frame& frame, int a, int b, double edge_length, std::vector<Part>& parts) const;
+  Part longest_side(int p) const;
+
+  const std::vector<Vec3>& corners_;  // the facets' vertices
+  const SurfacePlan& plan_;
+  std::vector<int> place_;  // of a vertex in the domain at hand; -1: not in it
+};
+
+}  // namespace luxel

@@ -1,0 +1,59 @@
+#include "shared_edges.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace luxel {
+
+namespace {
+
+std::uint64_t key(int a, int b) {
+  return static_cast<std::uint64_t>(std::min(a, b)) << 32 | static_cast<std::uint32_t>(std::max(a, b));
+}
+
+}  // namespace
+
+int SharedEdges::add(int a, int b) {
+  const auto [found, fresh] = index_.try_emplace(key(a, b), size());
+  if (fresh) ends_.push_back({std::min(a, b), std::max(a, b)});
+  return found->second;
+}
+
+int SharedEdges::find(int a, int b) const {
+  const auto found = index_.find(key(a, b));
+  return found == index_.end() ? -1 : found->second;
+}
+
+int SharedEdges::parts(double length, double edge_length) {
+  return std::max(1, static_cast<int>(std::lround(length / edge_length)));
+}
+
+void SharedEdges::divide(std::vector<Vec3>& vertices, double edge_length,
+                         const std::function<std::optional<std::vector<int>>(int, int)>& given) {
+  between_.assign(ends_.size(), {});
+  for (int e = 0; e < size(); ++e) {
+    const auto [a, b] = ends_[e];
+    if (auto points = given(a, b)) {
+      between_[e] = *std::move(points);
+      continue;
+    }
+    const Vec3 start = vertices[a];
+    const Vec3 d = vertices[b] - start;
+    const int count = parts(d.norm(), edge_length);
+    for (int k = 1; k < count; ++k) {
+      between_[e].push_back(static_cast<int>(vertices.size()));
+      vertices.push_back(start + d * (static_cast<double>(k) / count));
+    }
+  }
+}
+
+std::vector<int> SharedEdges::points(int a, int b) const {
+  std::vector<int> list = {std::min(a, b)};
+  const auto& between = between_[find(a, b)];
+  list.insert(list.end(), between.begin(), between.end());
+  list.push_back(std::max(a, b));
+  if (a > b) std::reverse(list.begin(), list.end());
+  return list;
+}
+
+}  // namespace luxel

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <unordered_map>
+#include <vector>
+
+#include "luxel/vector.h"
+
+namespace luxel {
+
+/// The straight edges of all polygons, each once, with one list of points that all polygons on it share.
+class SharedEdges {
+ public:
+  /// The edge between a and b; made on first mention.
+  int add(int a, int b);
+
+  int size() const { return static_cast<int>(ends_.size()); }
+  /// Ends, the smaller vertex first.
+  const std::array<int, 2>& ends(int edge) const { return ends_[edge]; }
+  /// -1 if no polygon has it.
+  int find(int a, int b) const;
+
+  /// Divides every edge: by the points between its ends that given(a, b) lists, or, where that has nothing to
+  /// say, into equal parts of about edge_length, whose points are appended to `vertices`.
+  void divide(std::vector<Vec3>& vertices, double edge_length,
+              const std::function<std::optional<std::vector<int>>(int, int)>& given);
+
+  /// The points from a to b, both included, after divide().
+  std::vector<int> points(int a, int b) const;
+
+  /// Into how many parts an edge of this length is divided.
+  static int parts(double length, double edge_length);
+
+ private:
+  std::vector<std::array<int, 2>> ends_;
+  std::unordered_map<std::uint64_t, int> index_;
+  std::vector<std::vector<int>> between_;
+};
+
+}  // namespace luxel
