@@ -64,8 +64,9 @@ Scene sphere(int level) {
 constexpr double smallest_angle = 24;  // [degrees]
 constexpr double count_tolerance = 0.05;
 #else
-// Halving keeps at least half of the right triangles' 45 degrees, and the count moves in steps.
-constexpr double smallest_angle = 22;
+// Halving keeps at least half of the input's smallest angle, here that of a 1 by 0.5 rectangle: atan(0.5)
+// / 2. The count moves in steps.
+constexpr double smallest_angle = 13.28;
 constexpr double count_tolerance = 0.5;
 #endif
 
