@@ -7,6 +7,7 @@
 
 #include "display_colours.h"
 #include "luxel/input_error.h"
+#include "luxel/view.h"
 #include "luxel/write_file.h"
 #include "module.h"
 #include "vtk_document.h"
@@ -38,6 +39,17 @@ struct Content {
   std::vector<double> luminance;
 };
 
+// Where a view of the scene is taken from, so that a script can show it from there
+void add_camera(std::vector<VtkArray>& fields, const Camera& camera) {
+  const auto add = [&](const char* name, const Vec3& x) {
+    fields.push_back({name, std::vector<double>(x.data(), x.data() + 3), 3, "m", true});
+  };
+  add("view_eye", camera.eye);
+  add("view_target", camera.target);
+  add("view_up", camera.up);
+  fields.push_back({"view_fov", std::vector<double>{camera.fov}, 1, "degrees"});
+}
+
 VtkDocument document(const PatchMesh& mesh, const GouraudMesh& gouraud, const PatchField& radiosity,
                      const ToneMap& tone_map, const Content& content) {
   VtkDocument result;
@@ -66,6 +78,7 @@ VtkDocument document(const PatchMesh& mesh, const GouraudMesh& gouraud, const Pa
                                                    "luminance: W/(m^2 sr)", "reflectance, row_sum_error: 1",
                                                    "emitted, absorbed, escaped: W"},
                           1, ""}};
+  add_camera(result.field_arrays, view_camera(mesh));
   result.active_cell_scalars = "luminance";
   return result;
 }
