@@ -33,7 +33,7 @@ def show_luminance(display, source, view, decades):
     colours.MapControlPointsToLogSpace()
     colours.UseLogScale = 1
     bar = simple.GetScalarBar(colours, view)
-    bar.Title, bar.ComponentTitle = "luminance [W/(m2 sr)]", ""
+    bar.Title, bar.ComponentTitle = "luminance, W/(m2 sr)", ""
     bar.TitleColor = bar.LabelColor = [0.0, 0.0, 0.0]
     bar.TitleFontSize, bar.LabelFontSize = 16, 14
     bar.WindowLocation, bar.Position, bar.ScalarBarLength = "Any Location", [0.9, 0.25], 0.5
@@ -70,6 +70,7 @@ def show(source, colours, decades):
         show_colours(display)
     else:
         show_luminance(display, source, view, decades)
+    simple.Render(view)  # the first rendering moves the camera
     place_camera(view, source)
     simple.Render(view)
     return view

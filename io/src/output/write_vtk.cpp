@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "display_colours.h"
+#include "extension.h"
 #include "luxel/input_error.h"
 #include "luxel/view.h"
 #include "luxel/write_file.h"
@@ -158,14 +159,11 @@ void write_vtk(const fs::path& path, const PatchMesh& mesh, const GouraudMesh& g
   if (!options.row_sum_error.empty() && options.row_sum_error.size() != mesh.areas.size()) {
     throw std::invalid_argument("write_vtk: row_sum_error is not one number per patch");
   }
-  if (path.extension() != ".vtp" && path.extension() != ".vtu") {
-    throw InputError(path.string() + ": found extension '" + path.extension().string() +
-                     "', expected .vtp or .vtu");
-  }
+  const std::string extension = output_extension(path, {".vtp", ".vtu"});
   const Content content = content_of(mesh, gouraud, solution.radiosity, vertex_radiosity);
   VtkDocument result =
       document(mesh, gouraud, solution.radiosity, tone_map_for(mesh, content.luminance), content);
-  result.unstructured = path.extension() == ".vtu";
+  result.unstructured = extension == ".vtu";
   result.cell_arrays.push_back({"irradiance", values(solution.irradiance), 3, flux_unit});
   if (!options.row_sum_error.empty()) {
     result.cell_arrays.push_back({"row_sum_error", options.row_sum_error, 1, "1"});
@@ -176,10 +174,7 @@ void write_vtk(const fs::path& path, const PatchMesh& mesh, const GouraudMesh& g
 
 VtkSeries::VtkSeries(fs::path path, const PatchMesh& mesh, const GouraudMesh& gouraud)
     : path_(std::move(path)), mesh_(mesh), gouraud_(gouraud) {
-  if (path_.extension() != ".pvd") {
-    throw InputError(path_.string() + ": found extension '" + path_.extension().string() +
-                     "', expected .pvd");
-  }
+  output_extension(path_, {".pvd"});
   OutputFile probe(path_);
 }
 
