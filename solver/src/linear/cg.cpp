@@ -15,8 +15,8 @@ constexpr std::size_t lanczos_steps = 100;
 // Patches below this reflect nothing that float64 could tell from rounding, and A / rho must not overflow.
 constexpr double least_reflectance = 1e-100;
 
-// A column whose <r, r> has fallen by this share of its start is far below rounding and is left alone, before it
-// underflows.
+// A column whose <r, r> has fallen by this share of its start is far below rounding and is left alone, before
+// it underflows.
 constexpr double exhausted_share = 1e-40;
 
 /// Condition number of the tridiagonal matrix that conjugate gradients with these step lengths have built
