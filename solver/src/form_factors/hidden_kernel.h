@@ -57,6 +57,8 @@ class HiddenWorkspace {
 /// boundary of the hidden region): each edge's visible part is its line's interval within the inner polygon
 /// less the union of the intervals that other cones cover, so that the cost grows with edges squared and not
 /// with subsets of cones. The points lie in front of the inner polygon and it in front of them.
+/// A point in one plane with edges of two cones that are no tie may see their order wrong by rounding: keep
+/// points off symmetric places.
 /// @param inner  counter-clockwise seen from the points
 void hidden_shares(const OuterPoints& points, const Vec3& normal, const Polygon& inner,
                    const Shadows& shadows, HiddenWorkspace& workspace, std::vector<double>& shares);

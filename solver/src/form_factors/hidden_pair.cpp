@@ -25,6 +25,9 @@ constexpr std::size_t most_cells = 400;
 // cheaper to look first.
 constexpr double cut_first = 2e-3;
 
+// Where the integral says that this share of a cell's exchange is hidden, it is looked at whether all of it is.
+constexpr double nearly_all = 0.9;
+
 double side(const Span& span) {
   return span.high > -span.low ? span.high : span.low;
 }
@@ -198,7 +201,7 @@ HiddenPart HiddenPair::operator()(int s, int t, const std::vector<Candidate>& ca
   const double whole = area(pair.cell, normal);
   if (!(whole > sliver_share * pair.outer->area)) return part;
   const std::vector<Polygon> cells = cells_by_side(pair, candidates);
-  std::size_t dark = 0;
+  std::size_t dark = 0, covered = 0;
   for (const Polygon& cell : cells) {
     const double share = area(cell, normal) / whole;
     if (!(share > sliver_share)) {
@@ -228,10 +231,13 @@ HiddenPart HiddenPair::operator()(int s, int t, const std::vector<Candidate>& ca
                      ? quadrature.smooth(smooth, unhidden * share, area(cell, normal), allowed)
                      : quadrature.adaptive(smooth, area(cell, normal), allowed);
     }
+    // several occluders may hide together what none hides alone
+    if (integral.value > nearly_all * unhidden * share && quadrature.cover(cell)) ++covered;
     part.value += integral.value;
     part.error += integral.error;
   }
-  part.all = dark == cells.size();
+  const bool rest_is_error = unhidden - part.value <= 4 * tolerance + part.error;
+  part.all = dark == cells.size() || (dark + covered == cells.size() && rest_is_error);
   if (part.all) part.value = unhidden;
   part.value = std::clamp(part.value, 0.0, unhidden);
   return part;

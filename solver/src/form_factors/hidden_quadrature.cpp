@@ -7,6 +7,8 @@
 #include <limits>
 #include <numbers>
 
+#include "luxel/form_factors.h"
+
 namespace luxel {
 
 namespace {
@@ -27,6 +29,9 @@ constexpr double gauss_constant = 0.1;
 constexpr int deepest = 12;
 
 constexpr int highest_order = 4;
+
+// What a sum of arcs around a hidden polygon loses to rounding, and a patch to the gap between welded faces.
+constexpr double covered_rounding = 1e-9;
 
 struct Node {
   double u, v, weight;
@@ -311,6 +316,18 @@ HiddenIntegral HiddenQuadrature::adaptive(std::span<const Polygon> cells, double
     parts.swap(next);
   }
   return sum;
+}
+
+bool HiddenQuadrature::cover(const Polygon& cell) {
+  points_.clear();
+  add_points(cell, 3, points_);
+  hidden_shares(points_, normal_, inner_, shadows_, workspace_, shares_);
+  const std::span corners(inner_.corners.data(), static_cast<std::size_t>(inner_.count));
+  for (std::size_t k = 0; k < shares_.size(); ++k) {
+    const Vec3 eye(points_.x[k], points_.y[k], points_.z[k]);
+    if (shares_[k] < (1 - covered_rounding) * point_form_factor(eye, normal_, corners)) return false;
+  }
+  return true;
 }
 
 }  // namespace luxel

@@ -39,6 +39,9 @@ class HiddenQuadrature {
   /// Over cells that may hold kinks: two rules of equal degree side by side, halved where they disagree.
   HiddenIntegral adaptive(std::span<const Polygon> cells, double area, double tolerance);
 
+  /// Whether the shadows hide the inner polygon as a whole from every point of a rule over the cell.
+  bool cover(const Polygon& cell);
+
  private:
   double distance_to_edges(const Vec3& point) const;
   void place(const Polygon& cell, double unhidden, double area, double tolerance, int depth);
