@@ -289,7 +289,8 @@ Command parse_command_line(int argc, const char* const* argv) {
   solve_app->allow_extras()->group("Commands");
   add_scene(*solve_app, solve.scene);
   add_outputs(*solve_app, solve.outputs,
-              "Write this file, by its extension .vtp .pvd .csv .json .png .exr or .hdr; may be given again");
+              "Write this file, by its extension .vtp .vtu .pvd .csv .json .ply .png .exr or .hdr; may be "
+              "given again");
   solve_app->add_flag("--full-precision", solve.full_precision, "17 digits in .csv instead of 9")
       ->group(output);
   add_form_factors(*solve_app, solve.form_factors, solve.save, solve.load);
