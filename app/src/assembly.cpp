@@ -65,7 +65,8 @@ void compute(Assembly& assembly, const FormFactorOptions& options, bool raw, con
     assembly.transport = std::make_unique<DenseOperator>(std::move(factors.exchange_areas), mesh.areas);
     record.closure.before = record.closure.after = {assembly.rows.max, assembly.rows.rms};
   } else {
-    ClosedOperator closed = close_rows(std::move(factors.exchange_areas), mesh.areas, record.enclosures, progress);
+    ClosedOperator closed =
+        close_rows(std::move(factors.exchange_areas), mesh.areas, record.enclosures, progress);
     assembly.transport = std::move(closed.transport);
     record.closure = closed.closure;
   }
@@ -128,7 +129,8 @@ Assembly assemble(const SceneOptions& scene, const OperatorOptions& options, con
   assembly.mesh = read_and_mesh(scene, general, progress, report);
   FormFactorOptions asked = options.form_factors;
   asked.precision = storage_precision(assembly.mesh.size(), asked.accuracy);
-  check_memory(solve_bytes(assembly.mesh.size(), asked.precision, method), general.memory, assembly.mesh.size());
+  check_memory(solve_bytes(assembly.mesh.size(), asked.precision, method), general.memory,
+               assembly.mesh.size());
 
   const Stopwatch watch;
   if (options.load.empty()) {

@@ -28,15 +28,15 @@ struct Assembly {
   RowErrors rows;         ///< before any correction; of_patch is empty for an operator that was loaded
 };
 
-/// The first half of the road: reads the scene, cuts it into patches, computes their form factors and closes the
-/// rows, or loads the operator; saves it where asked. Fills in report.scene, patches and transport. `method` is what
-/// will solve it, for the memory estimate.
+/// The first half of the road: reads the scene, cuts it into patches, computes their form factors and closes
+/// the rows, or loads the operator; saves it where asked. Fills in report.scene, patches and transport.
+/// `method` is what will solve it, for the memory estimate.
 /// @throws InputError, Cancelled
 Assembly assemble(const SceneOptions& scene, const OperatorOptions& options, const GeneralOptions& general,
                   std::optional<Method> method, const Progress& progress, Report& report);
 
-/// Whether the raw rows are as accurate as asked, as far as the shares measured by rays can tell: RMS <= accuracy,
-/// and in `factors` the largest <= 2 accuracy.
+/// Whether the raw rows are as accurate as asked, as far as the shares measured by rays can tell: RMS <=
+/// accuracy, and in `factors` the largest <= 2 accuracy.
 bool accuracy_reached(const Assembly& assembly, bool largest_too);
 
 /// Reads and meshes only; fills in report.scene (but for closed and enclosures) and patches.

@@ -84,7 +84,8 @@ ExitStatus run(const FactorsCommand& command) {
     const PatchMesh mesh = read_and_mesh(command.scene, command.general, progress, report);
     report.point_factors = from_point(mesh, *command.point);
   } else {
-    const Assembly assembly = assemble(command.scene, command.transport, command.general, std::nullopt, progress, report);
+    const Assembly assembly =
+        assemble(command.scene, command.transport, command.general, std::nullopt, progress, report);
     if (command.by_group) report.group_factors = between_groups(assembly.mesh, *assembly.transport);
     if (command.point) report.point_factors = from_point(assembly.mesh, *command.point);
     write(command, assembly, progress);

@@ -15,8 +15,8 @@ Precision storage_precision(int patches, double accuracy);
 /// Memory that reading and cutting a scene into so many patches takes, about [bytes].
 std::size_t mesh_bytes(int patches);
 
-/// Memory that a dense operator of so many patches, and solving it by the method if there is one, will take at its
-/// peak, about [bytes].
+/// Memory that a dense operator of so many patches, and solving it by the method if there is one, will take
+/// at its peak, about [bytes].
 std::size_t solve_bytes(int patches, Precision precision, std::optional<Method> method);
 
 /// @param limit  bytes that may be taken; 0: what the machine has

@@ -23,7 +23,7 @@ constexpr std::size_t most_cells = 400;
 
 // Below this relative tolerance the outer patch is cut by events before anything is evaluated; above, it is
 // cheaper to look first.
-constexpr double cut_first = 0.02;
+constexpr double cut_first = 2e-3;
 
 double side(const Span& span) {
   return span.high > -span.low ? span.high : span.low;

@@ -16,9 +16,11 @@ namespace {
 // rounding (1e-16), far below any error asked for.
 constexpr double nudge = 1e-9;
 
-// An n-point Gauss rule over a cell of radius r at a distance D from the nearest edge errs by about this times
-// (2 D / r)^-2n of the integral: measured on rooms and rotated boxes, see docs/decisions/0007-visibility.md.
-constexpr double gauss_constant = 0.3;
+// Within a smooth cell the hidden area is a polynomial of degree two in the point as long as the cell's radius r
+// is small against its distance D from the nearest edge, with corrections by powers of r / D: a one-point rule
+// errs by about this share, one of order n > 1 by this times (2 D / r)^(2 - 2 n). Measured on rooms and rotated
+// boxes, see docs/decisions/0007-visibility.md.
+constexpr double gauss_constant = 0.1;
 
 // Cells are halved at most so often on their way to an edge that touches them; what is left then is
 // 2^-depth of the patch.
@@ -201,11 +203,12 @@ void HiddenQuadrature::place(const Polygon& cell, double unhidden, double whole,
   const double bound = gauss_constant * std::min(size, 4 * unhidden * share);
   const double allowed = tolerance * std::sqrt(share);
   const double ratio = 2 * distance_to_edges(middle) / radius;
-  double error = bound;
+  const double falloff = 1 / (ratio * ratio);
+  double error = 2 * bound;
   int order = 0;
   while (order < highest_order && error > allowed) {
     ++order;
-    error = bound * std::pow(ratio, -2 * order);
+    error = order == 1 ? bound : error * falloff;
   }
   if (error > allowed && depth < deepest && bound > allowed) {
     const HalvedCells parts = halve(cell, middle);

@@ -13,19 +13,27 @@ namespace luxel {
 struct RuleChoice {
   /// Smallest distance of the centres, in longest edges, from which level q may be used; index 0 unused.
   std::array<double, point_levels + 1> from;
+  /// The same for a pair that is known to keep a gap of `wide_gap` edges everywhere: centres alone do not
+  /// tell this of neighbours.
+  std::array<double, point_levels + 1> from_if_apart;
+  static constexpr double wide_gap = 0.6;
   bool fine = false;          ///< reciprocals to full double precision
   double pair_tolerance = 0;  ///< absolute error of a near pair's form factor from its smaller patch
 
   /// 1 .. point_levels, or 0: the contour integral. @param distance  in longest edges
-  int level(double distance) const {
-    for (int q = 1; q <= point_levels; ++q) {
-      if (distance >= from[q]) return q;
-    }
-    return 0;
-  }
+  int level(double distance) const { return first_level(from, distance); }
+  int level_if_apart(double distance) const { return first_level(from_if_apart, distance); }
 
   /// Estimated relative error of level q at this distance.
   static double error(int level, double distance);
+
+ private:
+  static int first_level(const std::array<double, point_levels + 1>& smallest, double distance) {
+    for (int q = 1; q <= point_levels; ++q) {
+      if (distance >= smallest[q]) return q;
+    }
+    return 0;
+  }
 };
 
 RuleChoice rule_choice(double accuracy);

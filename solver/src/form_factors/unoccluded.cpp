@@ -137,10 +137,17 @@ class Assembly {
     }
   }
 
+  int pair_level(const WorkPatch& p, const WorkPatch& q, double apart) const {
+    const int level = choice_.level(apart), bold = choice_.level_if_apart(apart);
+    if (level > 0 || bold == 0) return level;
+    const double wide = RuleChoice::wide_gap * std::max(p.edge, q.edge);
+    return gap(p.outline, p.plane, q.outline, q.plane) >= wide ? bold : 0;
+  }
+
   void fill_pair(int i, int j, bool whole, Tally& tally) const {
     const WorkPatch &p = tree_.patches[i], &q = tree_.patches[j];
     const double apart = distance(p, q);
-    const int level = choice_.level(apart);
+    const int level = pair_level(p, q, apart);
     if (whole && level > 0) {
       Tile tile;
       fill_tile(points_[level], planes_, i, i + 1, j, j + 1, choice_.fine, tile);
