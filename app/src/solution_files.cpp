@@ -2,8 +2,9 @@
 
 #include <algorithm>
 
-#include "interruption.h"
+#include "luxel/image.h"
 #include "luxel/input_error.h"
+#include "luxel/view.h"
 #include "luxel/write_csv.h"
 #include "luxel/write_file.h"
 #include "luxel/write_ply.h"
@@ -12,12 +13,12 @@
 namespace luxel::app {
 
 std::vector<std::string> solution_extensions() {
-  return {".vtp", ".vtu", ".pvd", ".csv", ".json", ".ply"};
+  return {".vtp", ".vtu", ".pvd", ".csv", ".json", ".ply", ".exr", ".png", ".hdr"};
 }
 
 SolutionFiles::SolutionFiles(const SolveCommand& command, const Assembly& assembly)
     : command_(command), assembly_(assembly) {
-  if (any({".vtp", ".vtu", ".pvd", ".ply"})) gouraud_ = gouraud_mesh(assembly.mesh);
+  if (any({".vtp", ".vtu", ".pvd", ".ply", ".exr", ".png", ".hdr"})) gouraud_ = gouraud_mesh(assembly.mesh);
   for (const std::string& file : command.outputs) {
     if (extension_of(file) != ".pvd") continue;
     series_.push_back(std::make_unique<VtkSeries>(file, assembly.mesh, gouraud_));
@@ -39,8 +40,12 @@ void SolutionFiles::add_step(const Iteration& iteration) {
 void SolutionFiles::write(const RadiositySolution& solution, const Report& report, const Progress& progress) {
   const PatchMesh& mesh = assembly_.mesh;
   PatchField vertex_radiosity;
-  if (any({".vtp", ".vtu", ".ply"})) {
+  if (!gouraud_.vertices.empty()) {
     vertex_radiosity = interpolate_to_vertices(mesh, gouraud_, solution.radiosity);
+  }
+  Image view;
+  if (any({".exr", ".png", ".hdr"})) {
+    view = render_view(mesh, gouraud_, vertex_radiosity, view_camera(mesh), {}, progress);
   }
   double done = 0;
   for (const std::string& file : command_.outputs) {
@@ -48,14 +53,21 @@ void SolutionFiles::write(const RadiositySolution& solution, const Report& repor
     const std::string extension = extension_of(file);
     if (extension == ".csv") {
       write_csv(file, mesh, solution, {.full_precision = command_.full_precision});
-    } else if (extension == ".json") {
-      write_file(file, to_json(report));
     } else if (extension == ".ply") {
       write_ply(file, mesh, gouraud_, vertex_radiosity);
-    } else if (extension != ".pvd") {
+    } else if (extension == ".exr" || extension == ".png" || extension == ".hdr") {
+      write_image(file, view,
+                  {.metadata = {{"Software", "luxel " LUXEL_VERSION}, {"luxel:scene", mesh.file}}});
+    } else if (extension == ".vtp" || extension == ".vtu") {
       write_vtk(file, mesh, gouraud_, solution, vertex_radiosity,
                 {.row_sum_error = assembly_.rows.of_patch, .report = &report});
     }
+  }
+}
+
+void SolutionFiles::write_report(const Report& report) const {
+  for (const std::string& file : command_.outputs) {
+    if (extension_of(file) == ".json") write_file(file, to_json(report));
   }
 }
 

@@ -26,9 +26,12 @@ class SolutionFiles {
   /// One more step for every time series.
   void add_step(const Iteration& iteration);
 
-  /// Writes all but the time series.
+  /// Writes all but the time series and the report.
   /// @throws InputError naming the file that could not be written; Cancelled before the next file
   void write(const RadiositySolution& solution, const Report& report, const Progress& progress);
+
+  /// Writes the report's own files (.json), for after everything that it measures.
+  void write_report(const Report& report) const;
 
  private:
   bool any(std::initializer_list<const char*> extensions) const;

@@ -61,14 +61,15 @@ void add_energy(Report& report, const Energy& energy) {
 ExitStatus run(const SolveCommand& command) {
   const Stopwatch watch;
   check_outputs(command.outputs, solution_extensions(), command.scene.file);
+  if (!command.transport.save.empty()) check_output(command.transport.save, command.scene.file);
   Report report = new_report("solve");
   ProgressBar bar(!command.general.quiet);
   const Progress progress = std::ref(bar);
 
   const Assembly assembly =
-      assemble(command.scene, command.form_factors, command.general, command.solve.method, progress, report);
+      assemble(command.scene, command.transport, command.general, command.solve.method, progress, report);
   const PatchMesh& mesh = assembly.mesh;
-  const TransportOperator& transport = *assembly.closed.transport;
+  const TransportOperator& transport = *assembly.transport;
   const PatchField rho = reflectance(mesh), emitted = emission(mesh);
   if ((emitted.array() == 0).all()) {
     report.scene.warnings.push_back(
@@ -86,10 +87,12 @@ ExitStatus run(const SolveCommand& command) {
 
   add_run_figures(report, watch);
   files.write(solution, report, progress);
+  add_run_figures(report, watch);
+  files.write_report(report);
   show(report, command.general, command.outputs);
 
   const bool solved = solution.report.converged || solution.report.stopped == Stopped::bounces;
-  return solved && assembly.rows.certain_rms <= command.form_factors.accuracy ? done : not_reached;
+  return solved && accuracy_reached(assembly, false) ? done : not_reached;
 }
 
 }  // namespace luxel::app

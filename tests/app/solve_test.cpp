@@ -94,8 +94,11 @@ TEST(Solve, CubeOfTwelveTrianglesHasItsExactRadiosity) {
 }
 
 TEST(Solve, LongCorridorIsRightThroughFiveDecades) {
-  const Solved solved =
-      solve_exactly(scene_text("corridor10", {{"white", finish(0.5)}}, {{"p000", finish(0.5, 1)}}));
+  json materials = {{"wall_x0", finish(0.5, 1)}};
+  for (const char* wall : {"wall_x1", "wall_y0", "wall_y1", "wall_z0", "wall_z1"})
+    materials[wall] = finish(0.5);
+
+  const Solved solved = solve_exactly(scene_text("corridor10", materials));
 
   // x = 0, x = 10, then four walls of ten segments
   std::vector<double> exact = {1.066640121279, 0.002046244613923};
