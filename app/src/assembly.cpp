@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+
+#include "luxel/input_error.h"
 #include "luxel/mesh_scene.h"
 #include "luxel/read_scene.h"
 #include "memory_plan.h"
@@ -28,18 +31,18 @@ void add_rows(const ExchangeMatrix& exchange, std::vector<double>& sums) {
 RowErrors row_errors(const ExchangeMatrix& exchange, const std::vector<double>& areas,
                      const Enclosures& enclosures) {
   RowErrors errors;
-  errors.signed_error.assign(areas.size(), 0.0);
+  errors.of_patch.assign(areas.size(), 0.0);
   if (exchange.precision() == Precision::float32) {
-    add_rows<float>(exchange, errors.signed_error);
+    add_rows<float>(exchange, errors.of_patch);
   } else {
-    add_rows<double>(exchange, errors.signed_error);
+    add_rows<double>(exchange, errors.of_patch);
   }
   double total = 0;
   for (std::size_t i = 0; i < areas.size(); ++i) {
-    double& error = errors.signed_error[i];
-    error = error / areas[i] + enclosures.open_share[i] + enclosures.back_share[i] - 1;
-    const double certain = std::max(0.0, std::abs(error) - 3 * enclosures.share_error[i]);
-    errors.max = std::max(errors.max, std::abs(error));
+    double& error = errors.of_patch[i];
+    error = std::abs(error / areas[i] + enclosures.open_share[i] + enclosures.back_share[i] - 1);
+    const double certain = std::max(0.0, error - 3 * enclosures.share_error[i]);
+    errors.max = std::max(errors.max, error);
     errors.certain_max = std::max(errors.certain_max, certain);
     errors.rms += areas[i] * error * error;
     errors.certain_rms += areas[i] * certain * certain;
@@ -48,6 +51,57 @@ RowErrors row_errors(const ExchangeMatrix& exchange, const std::vector<double>& 
   errors.rms = std::sqrt(errors.rms / total);
   errors.certain_rms = std::sqrt(errors.certain_rms / total);
   return errors;
+}
+
+void compute(Assembly& assembly, const FormFactorOptions& options, bool raw, const Progress& progress) {
+  const PatchMesh& mesh = assembly.mesh;
+  OperatorRecord& record = assembly.record;
+  record.options = options;
+  record.enclosures = find_enclosures(mesh, RayScene(mesh.occluders), 256, progress);
+  FormFactors factors = form_factors(mesh, options, progress);
+  record.form_factors = factors.report;
+  assembly.rows = row_errors(factors.exchange_areas, mesh.areas, record.enclosures);
+  if (raw) {
+    assembly.transport = std::make_unique<DenseOperator>(std::move(factors.exchange_areas), mesh.areas);
+    record.closure.before = record.closure.after = {assembly.rows.max, assembly.rows.rms};
+  } else {
+    ClosedOperator closed =
+        close_rows(std::move(factors.exchange_areas), mesh.areas, record.enclosures, progress);
+    assembly.transport = std::move(closed.transport);
+    record.closure = closed.closure;
+  }
+}
+
+void load(Assembly& assembly, const OperatorOptions& options, const Progress& progress) {
+  SavedOperator saved = load_operator(options.load, assembly.mesh, progress);
+  if (options.accuracy_given && saved.record.options.accuracy > options.form_factors.accuracy) {
+    throw InputError(fmt::format("{}: found form factors of accuracy {}, expected {} or better (--accuracy)",
+                                 options.load, saved.record.options.accuracy, options.form_factors.accuracy));
+  }
+  assembly.transport = std::move(saved.transport);
+  assembly.record = std::move(saved.record);
+  assembly.rows.max = assembly.record.closure.before.max;
+  assembly.rows.rms = assembly.record.closure.before.rms;
+}
+
+void report_operator(const Assembly& assembly, const Seconds& seconds, Report& report) {
+  const OperatorRecord& record = assembly.record;
+  report.scene.closed = record.enclosures.closed;
+  report.scene.enclosures = record.enclosures.count;
+  if (!record.closure.message.empty()) report.scene.warnings.push_back(record.closure.message);
+  Report::Operator figures;
+  figures.kind = assembly.transport->kind();
+  figures.accuracy = record.options.accuracy;
+  figures.bytes = assembly.transport->bytes();
+  figures.rays = record.enclosures.rays + record.form_factors.rays;
+  figures.cpu_seconds = seconds.cpu;
+  figures.wall_seconds = seconds.wall;
+  figures.row_sum_error_max = assembly.rows.max;
+  figures.row_sum_error_rms = assembly.rows.rms;
+  figures.reciprocity_error = 0;  // each pair is stored once, A_i F_ij and A_j F_ji are the same number
+  if (record.closure.applied) figures.correction = "symmetric scaling";
+  figures.largest_correction = record.closure.largest_correction;
+  report.transport = figures;
 }
 
 }  // namespace
@@ -69,40 +123,31 @@ PatchMesh read_and_mesh(const SceneOptions& options, const GeneralOptions& gener
   return mesh;
 }
 
-Assembly assemble(const SceneOptions& scene, const FormFactorOptions& form_factors,
-                  const GeneralOptions& general, Method method, const Progress& progress, Report& report) {
+Assembly assemble(const SceneOptions& scene, const OperatorOptions& options, const GeneralOptions& general,
+                  std::optional<Method> method, const Progress& progress, Report& report) {
   Assembly assembly;
   assembly.mesh = read_and_mesh(scene, general, progress, report);
-  const PatchMesh& mesh = assembly.mesh;
-
-  FormFactorOptions options = form_factors;
-  options.precision = storage_precision(mesh.size(), options.accuracy);
-  check_memory(solve_bytes(mesh.size(), options.precision, method), general.memory, mesh.size());
+  FormFactorOptions asked = options.form_factors;
+  asked.precision = storage_precision(assembly.mesh.size(), asked.accuracy);
+  check_memory(solve_bytes(assembly.mesh.size(), asked.precision, method), general.memory,
+               assembly.mesh.size());
 
   const Stopwatch watch;
-  assembly.enclosures = find_enclosures(mesh, RayScene(mesh.occluders), 256, progress);
-  FormFactors factors = luxel::form_factors(mesh, options, progress);
-  assembly.form_factors = factors.report;
-  assembly.rows = row_errors(factors.exchange_areas, mesh.areas, assembly.enclosures);
-  assembly.closed = close_rows(std::move(factors.exchange_areas), mesh.areas, assembly.enclosures, progress);
-  const Seconds seconds = watch.elapsed();
-
-  report.scene.closed = assembly.enclosures.closed;
-  report.scene.enclosures = assembly.enclosures.count;
-  Report::Operator figures;
-  figures.kind = assembly.closed.transport->kind();
-  figures.accuracy = options.accuracy;
-  figures.bytes = assembly.closed.transport->bytes();
-  figures.rays = assembly.enclosures.rays + assembly.form_factors.rays;
-  figures.cpu_seconds = seconds.cpu;
-  figures.wall_seconds = seconds.wall;
-  figures.row_sum_error_max = assembly.rows.max;
-  figures.row_sum_error_rms = assembly.rows.rms;
-  figures.reciprocity_error = 0;  // each pair is stored once, A_i F_ij and A_j F_ji are the same number
-  if (assembly.closed.closure.applied) figures.correction = "symmetric scaling";
-  figures.largest_correction = assembly.closed.closure.largest_correction;
-  report.transport = figures;
+  if (options.load.empty()) {
+    compute(assembly, asked, options.raw, progress);
+  } else {
+    load(assembly, options, progress);
+  }
+  report_operator(assembly, watch.elapsed(), report);
+  if (!options.save.empty()) {
+    save_operator(options.save, assembly.mesh, *assembly.transport, assembly.record, progress);
+  }
   return assembly;
+}
+
+bool accuracy_reached(const Assembly& assembly, bool largest_too) {
+  const double accuracy = assembly.record.options.accuracy;
+  return assembly.rows.certain_rms <= accuracy && (!largest_too || assembly.rows.certain_max <= 2 * accuracy);
 }
 
 }  // namespace luxel::app

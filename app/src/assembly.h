@@ -1,18 +1,19 @@
 #pragma once
 
+#include <memory>
+#include <optional>
 #include <vector>
 
 #include "commands.h"
-#include "luxel/dense_operator.h"
-#include "luxel/enclosures.h"
+#include "luxel/operator_file.h"
 #include "luxel/report.h"
 
 namespace luxel::app {
 
 /// How far the raw row of each patch is from what it should be.
 struct RowErrors {
-  std::vector<double>
-      signed_error;        ///< N: s_i + open_i + back_i - 1, open and back measured by rays of their own
+  /// N: |s_i + open_i + back_i - 1|, open and back measured by rays of their own.
+  std::vector<double> of_patch;
   double max = 0;          ///< largest magnitude
   double rms = 0;          ///< area-weighted
   double certain_max = 0;  ///< largest magnitude beyond three standard errors of the measured shares
@@ -22,18 +23,21 @@ struct RowErrors {
 /// Patches with their transport operator, ready to be solved or written.
 struct Assembly {
   PatchMesh mesh;
-  Enclosures enclosures;
-  ClosedOperator closed;
-  RowErrors rows;  ///< before any correction
-  FormFactorReport form_factors;
+  std::unique_ptr<DenseOperator> transport;
+  OperatorRecord record;  ///< how the operator came about, in this run or in the one that saved it
+  RowErrors rows;         ///< before any correction; of_patch is empty for an operator that was loaded
 };
 
 /// The first half of the road: reads the scene, cuts it into patches, computes their form factors and closes
-/// the rows; fills in report.scene, patches and transport. `method` is what will solve it, for the memory
-/// estimate.
+/// the rows, or loads the operator; saves it where asked. Fills in report.scene, patches and transport.
+/// `method` is what will solve it, for the memory estimate.
 /// @throws InputError, Cancelled
-Assembly assemble(const SceneOptions& scene, const FormFactorOptions& form_factors,
-                  const GeneralOptions& general, Method method, const Progress& progress, Report& report);
+Assembly assemble(const SceneOptions& scene, const OperatorOptions& options, const GeneralOptions& general,
+                  std::optional<Method> method, const Progress& progress, Report& report);
+
+/// Whether the raw rows are as accurate as asked, as far as the shares measured by rays can tell: RMS <=
+/// accuracy, and in `factors` the largest <= 2 accuracy.
+bool accuracy_reached(const Assembly& assembly, bool largest_too);
 
 /// Reads and meshes only; fills in report.scene (but for closed and enclosures) and patches.
 PatchMesh read_and_mesh(const SceneOptions& options, const GeneralOptions& general, const Progress& progress,

@@ -2,11 +2,15 @@
 
 #include <algorithm>
 #include <functional>
+#include <sstream>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 
+#include "help_text.h"
 #include "luxel/input_error.h"
+#include "luxel/read_scene.h"
 #include "suggestion.h"
 #include "values.h"
 #include "version.h"
@@ -20,6 +24,21 @@ constexpr const char* transport = "Form factors";
 constexpr const char* solving = "Solving";
 constexpr const char* output = "Output";
 constexpr const char* resources = "Resources";
+
+// The formatter breaks descriptions only where they have a line break.
+std::string wrapped(const std::string& text) {
+  constexpr std::size_t width = 82;  // beside the 30 columns of the names: 112 in all
+  std::string result;
+  std::size_t column = 0;
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    const bool breaks = column > 0 && column + 1 + word.size() > width;
+    if (column > 0) result += breaks ? '\n' : ' ';
+    column = breaks ? word.size() : column + (column > 0) + word.size();
+    result += word;
+  }
+  return result;
+}
 
 [[noreturn]] void refuse(const std::string& option, const std::string& found, const std::string& expected) {
   throw InputError(fmt::format("{}: found '{}', expected {}", option, found, expected));
@@ -36,7 +55,7 @@ CLI::Option* value_option(CLI::App& app, const std::string& names, const char* t
           [=](const std::string& text) {
             if (!accept(text)) refuse(shown, text, expected);
           },
-          description)
+          wrapped(description))
       ->type_name(type);
 }
 
@@ -83,7 +102,9 @@ void add_general(CLI::App& app, GeneralOptions& general) {
 }
 
 void add_scene(CLI::App& app, SceneOptions& scene) {
-  app.add_option("SCENE", scene.file, "A mesh (.obj with its .mtl) or a scene file (.json)");
+  app.add_option("SCENE", scene.file,
+                 wrapped(fmt::format("A mesh or a scene file: {}", fmt::join(scene_extensions(), " "))))
+      ->type_name("");
   app.add_flag("--as-is", scene.meshing.as_is, "One patch per input face")->group(sizing);
   number_option(app, "--patch-size", "LENGTH", 0, false, 1e300, "a length above 0 [m]",
                 "Longest edge of a patch, about [m]", [&scene](double x) { scene.meshing.patch_size = x; })
@@ -101,10 +122,14 @@ void add_scene(CLI::App& app, SceneOptions& scene) {
       });
 }
 
-void add_form_factors(CLI::App& app, FormFactorOptions& options, std::string& save, std::string& load) {
+void add_operator(CLI::App& app, OperatorOptions& chosen) {
+  FormFactorOptions& options = chosen.form_factors;
   number_option(app, "--accuracy", "A", 1e-8, true, 0.1, "a number from 1e-8 to 0.1",
                 "Relative error of the irradiance that the form factors may cause; default: 1e-3",
-                [&options](double x) { options.accuracy = x; })
+                [&chosen](double x) {
+                  chosen.form_factors.accuracy = x;
+                  chosen.accuracy_given = true;
+                })
       ->group(transport);
   value_option(
       app, "--visibility", "HOW", "auto, rays or exact",
@@ -124,8 +149,12 @@ void add_form_factors(CLI::App& app, FormFactorOptions& options, std::string& sa
   count_option(app, "--seed", "N", 0, UINT64_MAX, "a whole number", "Seed of the random streams; default: 1",
                [&options](std::uint64_t n) { options.seed = n; })
       ->group(transport);
-  (void)save;
-  (void)load;
+  app.add_option("--save", chosen.save, "Keep the form factors in this file")
+      ->type_name("FILE")
+      ->group(transport);
+  app.add_option("--load", chosen.load, "Use the form factors of this file, kept for the same patches")
+      ->type_name("FILE")
+      ->group(transport);
 }
 
 void add_solver(CLI::App& app, SolveOptions& options) {
@@ -160,17 +189,40 @@ void add_solver(CLI::App& app, SolveOptions& options) {
 }
 
 void add_outputs(CLI::App& app, std::vector<std::string>& outputs, const char* description) {
-  app.add_option("-o,--output", outputs, description)
+  app.add_option("-o,--output", outputs, wrapped(description))
       ->type_name("FILE")
       ->allow_extra_args(false)
       ->group(output);
+}
+
+void add_full_precision(CLI::App& app, bool& full_precision) {
+  app.add_flag("--full-precision", full_precision, "17 digits in text files instead of 9")->group(output);
+}
+
+void add_factor_tables(CLI::App& app, FactorsCommand& factors) {
+  value_option(app, "--by", "WHAT", "group", "Form factors between what: group",
+               [&factors](const std::string& text) {
+                 factors.by_group = text == "group";
+                 return factors.by_group;
+               })
+      ->group(output);
+  value_option(app, "--point", "X,Y,Z,NX,NY,NZ", "six numbers with commas between, the last three not all 0",
+               "Form factors from a point [m] with this normal to every group",
+               [&factors](const std::string& text) {
+                 factors.point = parse_point(text);
+                 return factors.point.has_value();
+               })
+      ->group(output);
+  app.add_flag("--raw", factors.transport.raw, "Form factors as computed, rows not scaled to close")
+      ->group(output);
+  add_full_precision(app, factors.full_precision);
 }
 
 // Names of an app's options as typed, for suggestions.
 std::vector<std::string> option_names(const CLI::App& app) {
   std::vector<std::string> names;
   for (const CLI::Option* option : app.get_options()) {
-    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    for (const std::string& name : option->get_lnames()) names.push_back(fmt::format("--{}", name));
   }
   return names;
 }
@@ -189,57 +241,47 @@ void refuse_extras(const CLI::App& app, const std::string& scene) {
 void check_scene(const CLI::App& app, const SceneOptions& scene) {
   refuse_extras(app, scene.file);
   if (scene.file.empty())
-    throw InputError(app.get_name() + ": no scene given, expected a file (.obj or .json)");
+    throw InputError(app.get_name() + ": no scene given, expected a mesh or scene file");
   if (scene.meshing.as_is + (scene.meshing.patch_size > 0) + (scene.meshing.patches > 0) > 1) {
     throw InputError(app.get_name() +
                      ": found more than one of --as-is, --patch-size and --patches, expected one");
   }
 }
 
+std::vector<std::string> command_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    names.push_back(command->get_name());
+  }
+  return names;
+}
+
 // What is typed after `luxel`, where it is no command.
-[[noreturn]] void refuse_command(const std::string& typed) {
-  static const std::vector<std::string> commands = {"solve", "factors", "inspect"};
+[[noreturn]] void refuse_command(const CLI::App& app, const std::string& typed) {
   static const std::vector<std::string> later = {"compare", "stress", "render"};
+  const std::vector<std::string> names = command_names(app);
   if (std::find(later.begin(), later.end(), typed) != later.end()) {
-    throw InputError("the command '" + typed + "' is not part of this version");
+    throw InputError(fmt::format("the command '{}' is not part of this version", typed));
   }
   if (!typed.empty() && typed[0] == '-') {
     throw InputError(fmt::format("unknown option '{}' before the command (see luxel --help)", typed));
   }
-  throw InputError(fmt::format("unknown command '{}'{} (expected solve, factors or inspect)", typed,
-                               suggestion(typed, commands)));
+  throw InputError(fmt::format("unknown command '{}'{} (expected {})", typed, suggestion(typed, names),
+                               fmt::join(names, ", ")));
 }
 
-constexpr const char* main_footer =
-    "\nExamples:\n"
-    "  luxel solve room.obj -o room.vtp -o room.png     light for ParaView, and a picture\n"
-    "  luxel factors room.obj --by group                form factors between the groups\n"
-    "  luxel inspect room.obj                           what is in it and what is wrong with it\n"
-    "\nluxel COMMAND --help tells the rest. Lengths are in metres, radiosity, irradiance and emission in "
-    "W/m2.\n"
-    "Exit status: 0 done, 1 not reached (not converged, accuracy not met), 2 input or command line "
-    "unusable,\n"
-    "3 a fault of luxel, 130 stopped by Ctrl-C.";
+void check_operator(const CLI::App& app, const OperatorOptions& options) {
+  if (!options.load.empty() && (options.raw || !options.save.empty())) {
+    throw InputError(fmt::format("{}: found --load with {}, expected one of them", app.get_name(),
+                                 options.raw ? "--raw" : "--save"));
+  }
+}
 
-constexpr const char* solve_footer =
-    "\nExamples:\n"
-    "  luxel solve cornell.json -o cornell.vtp -o cornell.png\n"
-    "  luxel solve room.obj --patches 20000 --accuracy 1e-4 -o room.vtp --json > room.json\n"
-    "  luxel solve cube.obj --as-is --solver cholesky --tolerance 1e-12 -o cube.csv --full-precision\n"
-    "  luxel solve room.obj --bounces 5 -o bounces.pvd     one time step a bounce, for ParaView\n"
-    "\nUnits: lengths m; emission E, irradiance H and radiosity B W/m2; radiance is B / pi.";
-
-constexpr const char* factors_footer =
-    "\nExamples:\n"
-    "  luxel factors room.obj --by group\n"
-    "  luxel factors room.obj --as-is --accuracy 1e-6 -o factors.csv\n"
-    "  luxel factors room.obj --point 1,1,0.8,0,0,1        from a point and its normal to every group\n"
-    "\nF_ij is the share of what leaves patch i that arrives at patch j; A_i F_ij = A_j F_ji.";
-
-constexpr const char* inspect_footer =
-    "\nExamples:\n"
-    "  luxel inspect room.obj\n"
-    "  luxel inspect room.json --patches 100000 --json";
+void check_bounces(const SolveOptions& options) {
+  if (!options.bounces || options.method == Method::automatic || options.method == Method::neumann) return;
+  throw InputError(
+      fmt::format("solve: found --bounces with --solver {}, expected neumann", name(options.method)));
+}
 
 }  // namespace
 
@@ -250,24 +292,41 @@ Command parse_command_line(int argc, const char* const* argv) {
   app.set_version_flag("--version", version_text(), "Print version and licence and stop");
   app.allow_extras();
   app.require_subcommand(0, 1);
+  app.get_formatter()->column_width(30);
+  app.get_formatter()->label("SUBCOMMAND", "COMMAND");
   app.footer(main_footer);
 
   SolveCommand solve;
-  CLI::App* solve_app = app.add_subcommand("solve", "Light every patch: the main job")->allow_extras();
+  CLI::App* solve_app = app.add_subcommand("solve", "Light every patch: the main job");
+  solve_app->allow_extras()->group("Commands");
   add_scene(*solve_app, solve.scene);
   add_outputs(*solve_app, solve.outputs,
-              "Write this file, by its extension .vtp .pvd .csv .json .png .exr or .hdr; may be given again");
+              "Write this file, by its extension .vtp .vtu .pvd .csv .json .ply .png .exr or .hdr; may be "
+              "given again");
   solve_app->add_flag("--full-precision", solve.full_precision, "17 digits in .csv instead of 9")
       ->group(output);
-  add_form_factors(*solve_app, solve.form_factors, solve.save, solve.load);
+  add_operator(*solve_app, solve.transport);
   add_solver(*solve_app, solve.solve);
   add_general(*solve_app, solve.general);
   solve_app->footer(solve_footer);
 
+  FactorsCommand factors;
+  CLI::App* factors_app =
+      app.add_subcommand("factors", "Form factors: of all patches to files, or between groups");
+  factors_app->allow_extras()->group("Commands");
+  add_scene(*factors_app, factors.scene);
+  add_factor_tables(*factors_app, factors);
+  add_outputs(*factors_app, factors.outputs,
+              "Write this file, by its extension .mtx .csv or .h5 (every F_ij) or .json (the report); may be "
+              "given again");
+  add_operator(*factors_app, factors.transport);
+  add_general(*factors_app, factors.general);
+  factors_app->footer(factors_footer);
+
   InspectCommand inspect;
   CLI::App* inspect_app =
-      app.add_subcommand("inspect", "Tell what is in a scene, what is wrong with it and what it needs")
-          ->allow_extras();
+      app.add_subcommand("inspect", "Tell what is in a scene, what is wrong with it and what it needs");
+  inspect_app->allow_extras()->group("Commands");
   add_scene(*inspect_app, inspect.scene);
   add_general(*inspect_app, inspect.general);
   inspect_app->footer(inspect_footer);
@@ -276,24 +335,31 @@ Command parse_command_line(int argc, const char* const* argv) {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {
     const auto chosen = app.get_subcommands();
-    return ShowText{chosen.empty() ? app.help()
-                                   : chosen.front()->help("luxel " + chosen.front()->get_name())};
+    return ShowText{chosen.empty() ? app.help() : chosen.front()->help("luxel")};
   } catch (const CLI::CallForVersion&) {
     return ShowText{version_text()};
   } catch (const CLI::ParseError& error) {
     throw InputError(error.what());
   }
 
-  if (!app.remaining().empty()) refuse_command(app.remaining().front());
+  if (!app.remaining().empty()) refuse_command(app, app.remaining().front());
   if (*solve_app) {
     check_scene(*solve_app, solve.scene);
+    check_operator(*solve_app, solve.transport);
+    check_bounces(solve.solve);
     return solve;
+  }
+  if (*factors_app) {
+    check_scene(*factors_app, factors.scene);
+    check_operator(*factors_app, factors.transport);
+    return factors;
   }
   if (*inspect_app) {
     check_scene(*inspect_app, inspect.scene);
     return inspect;
   }
-  throw InputError("no command given (expected solve, factors or inspect; see luxel --help)");
+  throw InputError(
+      fmt::format("no command given (expected {}; see luxel --help)", fmt::join(command_names(app), ", ")));
 }
 
 }  // namespace luxel::app

@@ -29,27 +29,34 @@ struct SceneOptions {
   MeshingOptions meshing;
 };
 
+/// How the transport operator comes about.
+struct OperatorOptions {
+  FormFactorOptions form_factors;
+  bool accuracy_given = false;  ///< form_factors.accuracy was typed, not the default
+  bool raw = false;             ///< rows are left as computed
+  std::string save;             ///< file to keep the operator in; empty: none
+  std::string load;             ///< file of a kept operator to use instead of computing one; empty: none
+};
+
 /// luxel solve
 struct SolveCommand {
   GeneralOptions general;
   SceneOptions scene;
-  FormFactorOptions form_factors;
+  OperatorOptions transport;
   SolveOptions solve;
   std::vector<std::string> outputs;
   bool full_precision = false;
-  std::string save, load;
 };
 
 /// luxel factors
 struct FactorsCommand {
   GeneralOptions general;
   SceneOptions scene;
-  FormFactorOptions form_factors;
+  OperatorOptions transport;
   std::vector<std::string> outputs;
+  bool full_precision = false;
   bool by_group = false;
-  bool raw = false;
-  std::vector<std::array<double, 6>> points;  ///< x, y, z and the normal's three
-  std::string save, load;
+  std::optional<std::array<double, 6>> point;  ///< x, y, z [m] and a normal's three components
 };
 
 /// luxel inspect

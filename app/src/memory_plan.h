@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 
 #include "luxel/exchange_matrix.h"
 #include "luxel/solve.h"
@@ -14,8 +15,9 @@ Precision storage_precision(int patches, double accuracy);
 /// Memory that reading and cutting a scene into so many patches takes, about [bytes].
 std::size_t mesh_bytes(int patches);
 
-/// Memory that solving a dense system of so many patches will take at its peak, about [bytes].
-std::size_t solve_bytes(int patches, Precision precision, Method method);
+/// Memory that a dense operator of so many patches, and solving it by the method if there is one, will take
+/// at its peak, about [bytes].
+std::size_t solve_bytes(int patches, Precision precision, std::optional<Method> method);
 
 /// @param limit  bytes that may be taken; 0: what the machine has
 /// @throws InputError with the estimate where it is above the limit

@@ -11,6 +11,9 @@ namespace luxel::app {
 void check_outputs(std::span<const std::string> files, std::span<const std::string> extensions,
                    const std::string& input);
 
+/// The same for one file of any name.
+void check_output(const std::string& file, const std::string& input);
+
 /// The extension of a file in lower case, with the dot; empty where there is none.
 std::string extension_of(const std::string& file);
 

@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 
+#include "factor_tables.h"
+
 namespace luxel::app {
 
 Report new_report(const std::string& command) {
@@ -31,8 +33,11 @@ void show(const Report& report, const GeneralOptions& general, const std::vector
   if (general.json) {
     std::fputs(to_json(report).c_str(), stdout);
   } else if (!general.quiet) {
-    std::fputs(summary(report).c_str(), stdout);
-    for (const std::string& file : written) fmt::print("wrote         {}\n", file);
+    Report without_warnings = report;  // they are on stderr already
+    without_warnings.scene.warnings.clear();
+    std::fputs(summary(without_warnings).c_str(), stdout);
+    std::fputs(factor_tables(report).c_str(), stdout);
+    for (const std::string& file : written) fmt::print("wrote        {}\n", file);
   }
 }
 

@@ -16,13 +16,14 @@ namespace {
 
 // The options of one solve with the clocks that the library does not read: history and Ctrl-C.
 SolveOptions watched(const SolveOptions& options, const Stopwatch& watch, ProgressBar& bar,
-                     std::vector<Report::HistoryEntry>& history) {
+                     std::vector<Report::HistoryEntry>& history, SolutionFiles& files) {
   SolveOptions watched = options;
   if (options.bounces) watched.method = Method::neumann;
   watched.on_iteration =
       [&, last = options.bounces.value_or(options.max_iterations)](const Iteration& iteration) {
         const Seconds now = watch.elapsed();
         history.push_back({iteration.number, now.wall, now.cpu, iteration.relative_residual, not_known});
+        files.add_step(iteration);
         return bar("solving", iteration.number, last);
       };
   return watched;
@@ -60,14 +61,15 @@ void add_energy(Report& report, const Energy& energy) {
 ExitStatus run(const SolveCommand& command) {
   const Stopwatch watch;
   check_outputs(command.outputs, solution_extensions(), command.scene.file);
+  if (!command.transport.save.empty()) check_output(command.transport.save, command.scene.file);
   Report report = new_report("solve");
   ProgressBar bar(!command.general.quiet);
   const Progress progress = std::ref(bar);
 
   const Assembly assembly =
-      assemble(command.scene, command.form_factors, command.general, command.solve.method, progress, report);
+      assemble(command.scene, command.transport, command.general, command.solve.method, progress, report);
   const PatchMesh& mesh = assembly.mesh;
-  const TransportOperator& transport = *assembly.closed.transport;
+  const TransportOperator& transport = *assembly.transport;
   const PatchField rho = reflectance(mesh), emitted = emission(mesh);
   if ((emitted.array() == 0).all()) {
     report.scene.warnings.push_back(
@@ -76,18 +78,21 @@ ExitStatus run(const SolveCommand& command) {
 
   const Stopwatch solve_watch;
   std::vector<Report::HistoryEntry> history;
+  SolutionFiles files(command, assembly);
   const RadiositySolution solution =
-      solve(transport, rho, emitted, watched(command.solve, solve_watch, bar, history));
+      solve(transport, rho, emitted, watched(command.solve, solve_watch, bar, history, files));
   if (interruption_requested()) throw Cancelled();
   add_solver(report, solution.report, solve_watch.elapsed(), std::move(history));
   add_energy(report, energy(transport, rho, emitted, solution));
 
   add_run_figures(report, watch);
-  write_solution(command, assembly, solution, progress, report);
+  files.write(solution, report, progress);
+  add_run_figures(report, watch);
+  files.write_report(report);
   show(report, command.general, command.outputs);
 
   const bool solved = solution.report.converged || solution.report.stopped == Stopped::bounces;
-  return solved && assembly.rows.certain_rms <= command.form_factors.accuracy ? done : not_reached;
+  return solved && accuracy_reached(assembly, false) ? done : not_reached;
 }
 
 }  // namespace luxel::app

@@ -9,12 +9,12 @@ namespace luxel {
 namespace {
 
 // Lattice points keep this distance from border points, in edge lengths: nearer ones make triangles with
-// short edges, farther ones leave gaps that long thin triangles fill. The smallest angles are best around
-// 0.69.
+// short edges, farther ones leave gaps that long thin triangles fill. From 0.6 to 0.75 the mean of the
+// smallest angles rises by two degrees and that of the longest edges by a twentieth: 0.69 is between.
 constexpr double distance_to_points = 0.69;
 
 // And this one from border edges: nearer, the triangle over the edge is too flat.
-constexpr double distance_to_edges = 0.5;
+constexpr double distance_to_edges = 0.45;
 
 // Height of an equilateral triangle of edge 1.
 constexpr double row_height = 0.8660254037844386;

@@ -87,7 +87,8 @@ INSTANTIATE_TEST_SUITE_P(
         bad_obj("ZeroByte", "v 0 0 0\nv " + std::string(1, '\0') + "\n",
                 ":2: a zero byte; expected a text file"),
         bad_obj("LibraryWithoutName", "mtllib\n", ":1: mtllib without a file name"),
-        BadInput{"Extension", "a.blend", "BLENDER", "a.blend: extension \".blend\"; expected .json .obj"}),
+        BadInput{"Extension", "a.blend", "BLENDER",
+                 "a.blend: extension \".blend\"; expected .json .obj .ply .stl .off .gltf .glb"}),
     [](const auto& bad) { return bad.param.name; });
 
 INSTANTIATE_TEST_SUITE_P(

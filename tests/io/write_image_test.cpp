@@ -111,11 +111,25 @@ TEST(WriteImage, AFileThatGrowsBeyondTheLimitLeavesTheOldOne) {
   EXPECT_EQ(scratch.entries(), 3);
 }
 
+TEST(WriteImage, ReadsExtensionsInCapitals) {
+  const Scratch scratch;
+
+  write_image(scratch / "A.PNG", sample());
+
+  EXPECT_EQ(content(scratch / "A.PNG").substr(1, 3), "PNG");
+}
+
 TEST(WriteImage, RefusesOtherExtensionsAndShapes) {
   const Scratch scratch;
   Image image = sample();
 
-  EXPECT_THROW(write_image(scratch / "a.jpg", image), InputError);
+  try {
+    write_image(scratch / "a.jpg", image);
+    ADD_FAILURE() << "a.jpg was written";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.what(),
+              (scratch / "a.jpg").string() + ": found extension '.jpg', expected .exr or .hdr or .png");
+  }
   image.rgb.pop_back();
   EXPECT_THROW(write_image(scratch / "a.exr", image), std::invalid_argument);
   EXPECT_EQ(scratch.entries(), 0);

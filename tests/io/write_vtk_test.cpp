@@ -71,6 +71,7 @@ TEST(WriteVtk, PolygonsReadBackWithEveryArrayAndUnit) {
   EXPECT_NE(text.find("point/display_rgb unsigned char RGB []: "), std::string::npos);
   EXPECT_TRUE(has_line(text, "field/material_names string - []: white|lamp, \"hot\""));
   EXPECT_TRUE(has_line(text, "field/group_names string - []: floor"));
+  EXPECT_TRUE(has_line(text, "field/view_target double XYZ [m]: 0.5|0.5|0"));
   EXPECT_TRUE(has_line(text, "active luminance"));
   EXPECT_EQ(scratch.entries(), 1);
 }

@@ -77,6 +77,32 @@ inline MatrixOperator sphere(const Eigen::VectorXd& areas, Precision precision =
   return MatrixOperator::from_exchange_areas(areas * areas.transpose() / areas.sum(), areas, precision);
 }
 
+/// Two facing unit squares at distance 1, open to all sides. Source: Howell's catalogue C-11.
+inline MatrixOperator two_plates() {
+  constexpr double facing = 0.199824895698387;
+  return MatrixOperator::from_exchange_areas((Eigen::MatrixXd(2, 2) << 0, facing, facing, 0).finished(),
+                                             Eigen::VectorXd::Ones(2));
+}
+
+/// The cube with its floor listed twice, so that rows sum to 1.2 and F has the spectral radius 1.148331.
+inline MatrixOperator cube_with_duplicate_floor() {
+  const Eigen::MatrixXd f = cube6().rows();
+  std::vector<int> order{0, 1, 2, 3, 4, 5, 0};
+  Eigen::MatrixXd doubled = f(order, order);
+  return MatrixOperator::from_exchange_areas(doubled, Eigen::VectorXd::Ones(7));
+}
+
+/// Two operators side by side, which do not see each other.
+inline MatrixOperator side_by_side(const MatrixOperator& a, const MatrixOperator& b) {
+  Eigen::MatrixXd exchange = Eigen::MatrixXd::Zero(a.size() + b.size(), a.size() + b.size());
+  Eigen::VectorXd areas(a.size() + b.size());
+  areas << Eigen::Map<const Eigen::VectorXd>(a.areas().data(), a.size()),
+      Eigen::Map<const Eigen::VectorXd>(b.areas().data(), b.size());
+  exchange.topLeftCorner(a.size(), a.size()) = a.rows();
+  exchange.bottomRightCorner(b.size(), b.size()) = b.rows();
+  return MatrixOperator::from_exchange_areas(areas.asDiagonal() * exchange, areas);
+}
+
 /// A closed enclosure of n patches with random couplings, areas over two orders, rows that sum to 1 to
 /// rounding.
 inline MatrixOperator random_enclosure(int n, unsigned seed, Precision precision = Precision::float64) {
@@ -91,6 +117,13 @@ inline MatrixOperator random_enclosure(int n, unsigned seed, Precision precision
     }
   }
   const Eigen::VectorXd areas = g.rowwise().sum();  // rows of F sum to 1 by construction
+  if (precision == Precision::float32) {
+    for (int i = 0; i < n; ++i) {
+      double rounding = 0;
+      for (int j = 0; j < n; ++j) rounding += g(i, j) - static_cast<float>(g(i, j));
+      g(i, i) = rounding;  // the diagonal closes what storing has rounded
+    }
+  }
   return MatrixOperator::from_exchange_areas(g, areas, precision);
 }
 

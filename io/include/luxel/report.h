@@ -96,6 +96,16 @@ struct Report {
     std::vector<double> open;                       ///< share that meets no front
   };
 
+  /// Form factors from a point with a normal to groups.
+  struct PointFactors {
+    std::array<double, 3> point{};   ///< [m]
+    std::array<double, 3> normal{};  ///< unit vector
+    std::vector<std::string> groups;
+    std::vector<double> form_factors;  ///< one for each group
+    double open = 0;                   ///< share that escapes or meets a back
+    double error = 0;                  ///< standard error of the largest of these figures; 0: exact
+  };
+
   Run run;
   Scene scene;
   std::int64_t patches = 0;
@@ -104,6 +114,7 @@ struct Report {
   std::optional<Energy> energy;
   std::optional<Error> error;
   std::optional<GroupFactors> group_factors;
+  std::optional<PointFactors> point_factors;  ///< "point" in JSON
   std::vector<LeftOut> left_out;
   double cpu_seconds = 0;  ///< user + system of the process
   double wall_seconds = 0;

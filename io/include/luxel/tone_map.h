@@ -11,13 +11,13 @@ namespace luxel {
 /// Luminance of a linear Rec. 709 colour, in the colour's own unit: 0.2126 R + 0.7152 G + 0.0722 B.
 double luminance(const Rgb& colour);
 
-/// From radiance to the 8-bit sRGB of a screen: exposure, a curve that is straight up to 0.6 and bends softly
-/// towards 1 above, and the sRGB transfer function (IEC 61966-2-1). The curve works on luminance, so hues
-/// stay; a colour too saturated for its brightness is mixed with grey of the same luminance until it fits.
+/// From radiance to the 8-bit sRGB of a screen: exposure, a curve for each channel that is straight up to 0.6
+/// and bends softly towards 1 above, and the sRGB transfer function (IEC 61966-2-1). What is very bright
+/// turns white.
 struct ToneMap {
   double exposure = 1;  ///< factor on radiance, > 0 [m2 sr / W]
 
-  /// Linear display colour, each channel in [0, 1]. A channel that is not finite or negative counts as 0.
+  /// Linear display colour, each channel in [0, 1]. Negative channels and NaN count as 0.
   Rgb linear(const Rgb& radiance) const;
   /// The same in 8-bit sRGB, rounded.
   std::array<std::uint8_t, 3> operator()(const Rgb& radiance) const;

@@ -64,8 +64,10 @@ vtkSmartPointer<vtkAbstractArray> vtk_array(const VtkArray& array) {
       std::visit([&](const auto& values) { return vtk_values(values, array.components); }, array.values);
   result->SetName(array.name.c_str());
   if (array.components == 3) {
-    constexpr const char* channels[] = {"R", "G", "B"};
-    for (int k = 0; k < 3; ++k) result->SetComponentName(k, channels[k]);
+    constexpr const char* colour[] = {"R", "G", "B"};
+    constexpr const char* place[] = {"X", "Y", "Z"};
+    const auto& names = array.place ? place : colour;
+    for (int k = 0; k < 3; ++k) result->SetComponentName(k, names[k]);
   }
   if (!array.unit.empty()) result->GetInformation()->Set(vtkDataArray::UNITS_LABEL(), array.unit.c_str());
   return result;

@@ -128,6 +128,12 @@ std::string to_json(const Report& report) {
     }
     document["open"] = numbers(report.group_factors->open);
   }
+  if (report.point_factors) {
+    const Report::PointFactors& from = *report.point_factors;
+    document["point"] = {{"position", numbers(from.point)}, {"normal", numbers(from.normal)},
+                         {"groups", from.groups},           {"form_factors", numbers(from.form_factors)},
+                         {"open", number(from.open)},       {"error", number(from.error)}};
+  }
   document["left_out"] = Json::array();
   for (const Report::LeftOut& item : report.left_out) {
     document["left_out"].push_back({{"what", item.what}, {"why", item.why}, {"saved", item.saved}});

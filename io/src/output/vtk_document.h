@@ -16,8 +16,9 @@ struct VtkArray {
                               std::vector<std::uint8_t>, std::vector<std::string>>;
   std::string name;
   Values values;       ///< tuple by tuple
-  int components = 1;  ///< 3: colours, named R, G, B
+  int components = 1;  ///< 3: colours, named R, G, B, or a place, named X, Y, Z
   std::string unit;    ///< kept with the array; empty: none
+  bool place = false;
 };
 
 /// What a .vtp or .vtu file holds, with no type of VTK's: handed to the module that writes it.

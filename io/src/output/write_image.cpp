@@ -1,6 +1,7 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "extension.h"
 #include "image_document.h"
 #include "luxel/image.h"
 #include "luxel/input_error.h"
@@ -71,10 +72,7 @@ ToneMap tone_map_for(const Image& image) {
 
 void write_image(const std::filesystem::path& path, const Image& image, const ImageOptions& options) {
   require_whole(image);
-  const std::string extension = path.extension().string();
-  if (extension != ".exr" && extension != ".hdr" && extension != ".png") {
-    throw InputError(path.string() + ": found extension '" + extension + "', expected .exr, .hdr or .png");
-  }
+  const std::string extension = output_extension(path, {".exr", ".hdr", ".png"});
   const auto encoder =
       *static_cast<const ImageEncoder*>(module_symbol("luxel_image", image_encoder_symbol, path));
   ImageDocument document;

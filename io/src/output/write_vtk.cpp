@@ -6,7 +6,9 @@
 #include <stdexcept>
 
 #include "display_colours.h"
+#include "extension.h"
 #include "luxel/input_error.h"
+#include "luxel/view.h"
 #include "luxel/write_file.h"
 #include "module.h"
 #include "vtk_document.h"
@@ -38,6 +40,17 @@ struct Content {
   std::vector<double> luminance;
 };
 
+// Where a view of the scene is taken from, so that a script can show it from there
+void add_camera(std::vector<VtkArray>& fields, const Camera& camera) {
+  const auto add = [&](const char* name, const Vec3& x) {
+    fields.push_back({name, std::vector<double>(x.data(), x.data() + 3), 3, "m", true});
+  };
+  add("view_eye", camera.eye);
+  add("view_target", camera.target);
+  add("view_up", camera.up);
+  fields.push_back({"view_fov", std::vector<double>{camera.fov}, 1, "degrees"});
+}
+
 VtkDocument document(const PatchMesh& mesh, const GouraudMesh& gouraud, const PatchField& radiosity,
                      const ToneMap& tone_map, const Content& content) {
   VtkDocument result;
@@ -66,6 +79,7 @@ VtkDocument document(const PatchMesh& mesh, const GouraudMesh& gouraud, const Pa
                                                    "luminance: W/(m^2 sr)", "reflectance, row_sum_error: 1",
                                                    "emitted, absorbed, escaped: W"},
                           1, ""}};
+  add_camera(result.field_arrays, view_camera(mesh));
   result.active_cell_scalars = "luminance";
   return result;
 }
@@ -145,14 +159,11 @@ void write_vtk(const fs::path& path, const PatchMesh& mesh, const GouraudMesh& g
   if (!options.row_sum_error.empty() && options.row_sum_error.size() != mesh.areas.size()) {
     throw std::invalid_argument("write_vtk: row_sum_error is not one number per patch");
   }
-  if (path.extension() != ".vtp" && path.extension() != ".vtu") {
-    throw InputError(path.string() + ": found extension '" + path.extension().string() +
-                     "', expected .vtp or .vtu");
-  }
+  const std::string extension = output_extension(path, {".vtp", ".vtu"});
   const Content content = content_of(mesh, gouraud, solution.radiosity, vertex_radiosity);
   VtkDocument result =
       document(mesh, gouraud, solution.radiosity, tone_map_for(mesh, content.luminance), content);
-  result.unstructured = path.extension() == ".vtu";
+  result.unstructured = extension == ".vtu";
   result.cell_arrays.push_back({"irradiance", values(solution.irradiance), 3, flux_unit});
   if (!options.row_sum_error.empty()) {
     result.cell_arrays.push_back({"row_sum_error", options.row_sum_error, 1, "1"});
@@ -163,10 +174,7 @@ void write_vtk(const fs::path& path, const PatchMesh& mesh, const GouraudMesh& g
 
 VtkSeries::VtkSeries(fs::path path, const PatchMesh& mesh, const GouraudMesh& gouraud)
     : path_(std::move(path)), mesh_(mesh), gouraud_(gouraud) {
-  if (path_.extension() != ".pvd") {
-    throw InputError(path_.string() + ": found extension '" + path_.extension().string() +
-                     "', expected .pvd");
-  }
+  output_extension(path_, {".pvd"});
   OutputFile probe(path_);
 }
 

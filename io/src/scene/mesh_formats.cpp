@@ -5,14 +5,19 @@
 #include <cctype>
 #include <system_error>
 
+#include "scene/gltf_reader.h"
 #include "scene/input_location.h"
 #include "scene/obj_reader.h"
+#include "scene/off_reader.h"
+#include "scene/ply_reader.h"
+#include "scene/stl_reader.h"
 
 namespace luxel {
 namespace {
 
 constexpr std::array formats{
-    MeshFormat{".obj", read_obj},
+    MeshFormat{".obj", read_obj}, MeshFormat{".ply", read_ply},   MeshFormat{".stl", read_stl},
+    MeshFormat{".off", read_off}, MeshFormat{".gltf", read_gltf}, MeshFormat{".glb", read_gltf},
 };
 
 }  // namespace

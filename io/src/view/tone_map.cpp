@@ -48,15 +48,8 @@ double srgb_encoded(double linear) {
 }
 
 Rgb ToneMap::linear(const Rgb& radiance) const {
-  const Rgb exposed = radiance.unaryExpr(
-      [this](double value) { return std::isfinite(value) && value > 0 ? value * exposure : 0.0; });
-  const double before = luminance(exposed);
-  if (!(before > 0)) return Rgb::Zero();
-  const double grey = curve(before);
-  const Rgb scaled = exposed * (grey / before);
-  const double largest = scaled.maxCoeff();
-  if (largest <= 1) return scaled;
-  return (grey + (scaled - grey) * ((1 - grey) / (largest - grey))).max(0).min(1);
+  return radiance.unaryExpr(
+      [this](double value) { return std::isnan(value) || value <= 0 ? 0.0 : curve(value * exposure); });
 }
 
 std::array<std::uint8_t, 3> ToneMap::operator()(const Rgb& radiance) const {

@@ -53,12 +53,23 @@ std::vector<Met> look_around(const PatchMesh& mesh, const RayScene& occluders, c
     sets.join(patch, seen);
     return Met::front;
   };
+  for (int k = 0; k < count; ++k) met[k] = classify(k);
+
+  // those that met no front are looked at again together
+  HemisphereRays lost;
+  std::vector<int> places;
   for (int k = 0; k < count; ++k) {
-    met[k] = classify(k);
     if (met[k] == Met::front) continue;
-    occluders.intersect({&rays.origins[k], 1}, {&rays.normals[k], 1}, {&rays.directions[k], 1}, {&hits[k], 1},
-                        RayScene::Look::twice);
-    met[k] = classify(k);
+    places.push_back(k);
+    lost.origins.push_back(rays.origins[k]);
+    lost.normals.push_back(rays.normals[k]);
+    lost.directions.push_back(rays.directions[k]);
+  }
+  std::vector<RayScene::Hit> second(places.size());
+  occluders.intersect(lost.origins, lost.normals, lost.directions, second, RayScene::Look::twice);
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    hits[places[k]] = second[k];
+    met[places[k]] = classify(places[k]);
   }
   return met;
 }
@@ -168,6 +179,11 @@ Enclosures find_enclosures(const PatchMesh& mesh, const RayScene& occluders, int
     }
     const bool lost = result.open_share[i] + result.back_share[i] > 0;
     if (lost || leaks[i] || proof(i) == Proof::open) result.enclosure_closed[result.enclosure[i]] = 0;
+  }
+  // none of the rays is no proof of nothing where the enclosure is open
+  for (int i = 0; i < size; ++i) {
+    const bool lost = result.open_share[i] + result.back_share[i] > 0;
+    if (!lost && !result.enclosure_closed[result.enclosure[i]]) result.share_error[i] = 1.0 / rays_per_patch;
   }
   result.closed = size > 0 && std::all_of(result.enclosure_closed.begin(), result.enclosure_closed.end(),
                                           [](char closed) { return closed != 0; });

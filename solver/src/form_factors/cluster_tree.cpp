@@ -275,6 +275,8 @@ class Builder {
         cluster.radius = std::max(cluster.radius, (patch.outline[c] - cluster.centre).norm());
       }
     }
+    cluster.cone_cosine = std::cos(cluster.cone);
+    cluster.cone_sine = std::sin(cluster.cone);
     return cluster;
   }
 

@@ -16,7 +16,8 @@ struct Cluster {
   bool planar = true;  ///< all patches lie in one plane, up to `thickness`, and share it bit for bit
   Plane plane;         ///< of a planar cluster; else mean normal through the centre
   double cone = 0;     ///< largest angle between the mean normal and a patch's normal [rad]; 0 if planar
-  Span setback;        ///< how far the patches' planes lie behind the centre, least and most; 0 if planar
+  double cone_cosine = 1, cone_sine = 0;  ///< of `cone`
+  Span setback;  ///< how far the patches' planes lie behind the centre, least and most; 0 if planar
   double thickness =
       0;              ///< largest distance of a corner from the plane of a planar cluster: rounding; else 0
   Vec3 centre;        ///< of the bounding sphere

@@ -41,7 +41,8 @@ class OuterEdge {
     for (int k = 0; k < count_; ++k) {
       const double x = (singularities_[k].at - middle) / half, y = singularities_[k].off / half;
       // sum of the distances from the foci = rho + 1 / rho
-      smallest = std::min(smallest, std::hypot(x - 1, y) + std::hypot(x + 1, y));
+      smallest =
+          std::min(smallest, std::sqrt((x - 1) * (x - 1) + y * y) + std::sqrt((x + 1) * (x + 1) + y * y));
     }
     const double c = std::max(0.5 * smallest, 1.0);
     return std::log(c + std::sqrt(c * c - 1));

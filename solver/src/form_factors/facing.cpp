@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "form_factors/cluster_tree.h"
 
@@ -19,10 +18,9 @@ constexpr double same_way = 1e-5;
 double support(const Cluster& cluster, const Vec3& offset) {
   const double along = cluster.plane.normal.dot(offset);
   if (cluster.planar) return along;
-  if (cluster.cone >= 0.5 * std::numbers::pi) return offset.norm();
-  const double across = std::sqrt(std::max(offset.squaredNorm() - along * along, 0.0));
-  if (std::atan2(across, along) <= cluster.cone) return offset.norm();
-  return along * std::cos(cluster.cone) + across * std::sin(cluster.cone);
+  const double square = offset.squaredNorm(), length = std::sqrt(square);
+  if (cluster.cone_cosine <= 0 || along >= length * cluster.cone_cosine) return length;
+  return along * cluster.cone_cosine + std::sqrt(std::max(square - along * along, 0.0)) * cluster.cone_sine;
 }
 
 }  // namespace

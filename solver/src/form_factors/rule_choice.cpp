@@ -19,7 +19,9 @@ constexpr double nearest_of_neighbours = 2.2;
 }  // namespace
 
 double RuleChoice::error(int level, double distance) {
-  return error_constant[level] / std::pow(distance, 2 * level);
+  double power = 1;
+  for (int q = 0; q < level; ++q) power *= distance * distance;
+  return error_constant[level] / power;
 }
 
 RuleChoice rule_choice(double accuracy) {

@@ -12,6 +12,13 @@ namespace {
 // More Lanczos coefficients than these add nothing to an estimate of the condition number.
 constexpr std::size_t lanczos_steps = 100;
 
+// Patches below this reflect nothing that float64 could tell from rounding, and A / rho must not overflow.
+constexpr double least_reflectance = 1e-100;
+
+// A column whose <r, r> has fallen by this share of its start is far below rounding and is left alone, before
+// it underflows.
+constexpr double exhausted_share = 1e-40;
+
 /// Condition number of the tridiagonal matrix that conjugate gradients with these step lengths have built
 /// (Golub and Van Loan 2013, 11.3.5); its eigenvalues lie between those of the system.
 double condition_of_lanczos(const std::vector<double>& alpha, const std::vector<double>& beta) {
@@ -39,13 +46,14 @@ PatchField cg(const RadiositySystem& system, PatchField radiosity, IterationWatc
   const auto areas = system.areas();
   PatchField weights(system.size(), m);
   for (Eigen::Index c = 0; c < m; ++c) {
-    weights.col(c) = (rho.col(c).array() > 0).select(areas.array() / rho.col(c).array(), 0);
+    weights.col(c) = (rho.col(c).array() > least_reflectance).select(areas.array() / rho.col(c).array(), 0);
   }
 
   PatchField residual = system.residual(radiosity);
   if (!watch.start(residual, radiosity)) return radiosity;
   PatchField direction = residual;
   Eigen::RowVectorXd rr = weighted_dots(weights, residual, residual);
+  const Eigen::RowVectorXd exhausted = exhausted_share * rr;
   std::vector<std::vector<double>> alphas(m), betas(m);
   bool go_on = true;
   while (go_on) {
@@ -54,13 +62,13 @@ PatchField cg(const RadiositySystem& system, PatchField radiosity, IterationWatc
     const Eigen::RowVectorXd curvature = weighted_dots(weights, direction, image);
     Eigen::RowVectorXd alpha(m);
     for (Eigen::Index c = 0; c < m; ++c) {
-      if (rr[c] > 0 && curvature[c] <= 0) {
+      if (rr[c] > exhausted[c] && curvature[c] <= 0) {
         watch.stop(Stopped::diverged, "the system is not positive definite at iteration " +
                                           std::to_string(watch.report().iterations + 1) +
                                           ": the operator returns more light than it is given");
         return radiosity;
       }
-      alpha[c] = rr[c] > 0 ? rr[c] / curvature[c] : 0;
+      alpha[c] = rr[c] > exhausted[c] ? rr[c] / curvature[c] : 0;
     }
     for_row_blocks(system.size(), [&](Eigen::Index first, Eigen::Index count) {
       for (Eigen::Index i = first; i < first + count; ++i) {
@@ -71,8 +79,8 @@ PatchField cg(const RadiositySystem& system, PatchField radiosity, IterationWatc
     const Eigen::RowVectorXd rr_next = weighted_dots(weights, residual, residual);
     Eigen::RowVectorXd beta(m);
     for (Eigen::Index c = 0; c < m; ++c) {
-      beta[c] = rr[c] > 0 ? rr_next[c] / rr[c] : 0;
-      if (rr[c] > 0 && alphas[c].size() < lanczos_steps) {
+      beta[c] = rr[c] > exhausted[c] ? rr_next[c] / rr[c] : 0;
+      if (rr[c] > exhausted[c] && alphas[c].size() < lanczos_steps) {
         alphas[c].push_back(alpha[c]);
         betas[c].push_back(beta[c]);
       }

@@ -33,13 +33,17 @@ SymmetricForm symmetric_form(const RadiositySystem& system, Eigen::Index column)
 template <class Real>
 std::shared_ptr<CholeskyFactor<Real>> factor(const RadiositySystem& system, const SymmetricForm& form) {
   const ExchangeRows exchange(system.transport());
+  const Eigen::VectorXd inverse = form.scale.cwiseInverse();
   auto result =
       std::make_shared<CholeskyFactor<Real>>(static_cast<int>(form.patches.size()), [&](int a, Real* row) {
-        const int i = form.patches[a];
-        for (int b = 0; b <= a; ++b) {
-          const double g = exchange(i, form.patches[b]) / (form.scale[a] * form.scale[b]);
-          row[b] = static_cast<Real>((a == b ? 1 : 0) - g);
-        }
+        exchange.lower_row(form.patches[a], [&](const auto* exchange_row) {
+          // patches are in order, so that the ones before a are in the lower triangle
+          for (int b = 0; b < a; ++b) {
+            const double g = static_cast<double>(exchange_row[form.patches[b]]);
+            row[b] = static_cast<Real>(-g * (inverse[a] * inverse[b]));
+          }
+        });
+        row[a] = static_cast<Real>(1 - exchange.diagonal(form.patches[a]) * (inverse[a] * inverse[a]));
       });
   return result->factor() ? result : nullptr;
 }

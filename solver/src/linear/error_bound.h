@@ -1,6 +1,6 @@
 #pragma once
 
-#include <limits>
+#include <vector>
 
 #include "linear/system.h"
 
@@ -37,9 +37,10 @@ class ErrorBound {
 
   const RadiositySystem* system_;
   double rounding_;                  ///< relative, of a row's sum
-  PatchField loss_;                  ///< w, N x m, a lower bound of (I - K) v
-  PatchField test_vector_;           ///< v, N x m; empty for v = 1
-  Eigen::RowVectorXd largest_test_;  ///< max_i v_i of each channel
+  std::vector<Eigen::Index> first_;  ///< a column of each group of equal reflectance, which share the rest
+  std::vector<Eigen::Index> group_;  ///< of each column
+  PatchField loss_;                  ///< w, N x groups: a lower bound of (I - K) v
+  Eigen::RowVectorXd largest_test_;  ///< max_i v_i of each group
 };
 
 }  // namespace luxel

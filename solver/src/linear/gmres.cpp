@@ -67,7 +67,9 @@ PatchField gmres(const RadiositySystem& system, PatchField radiosity, int restar
     std::vector<Hessenberg> columns;
     for (Eigen::Index c = 0; c < m; ++c) columns.emplace_back(restart, norm[c]);
 
-    const double target = watch.target();
+    // below the rounding of B the recurrence says nothing about the residual
+    const double rounding = 0x1p-53 * system.relative_norms(radiosity).maxCoeff();
+    const double target = std::max(watch.target(), rounding);
     int k = 0;
     bool cycle = true;
     while (cycle) {

@@ -10,7 +10,7 @@ namespace luxel {
 
 namespace {
 
-// Light that is reflected with rho s <= 1 never gains in any norm; operators with a few rows above 1 may gain
+// Light reflected with rho s <= 1 never gains power; operators with a few rows above 1 may gain
 // for two or three bounces before they settle.
 constexpr int rises_of_divergence = 5;
 
@@ -20,8 +20,19 @@ constexpr double growth_of_divergence = 1e6;
 // Conjugate gradients stay within a few dozen iterations of their best residual as long as they get on.
 constexpr int window_of_stagnation = 50;
 
-// The residual of a B rounded to float64 stays above about u ||B|| / ||E||.
-constexpr double rounding_floor = 0x1p-53;
+// The residual of a B rounded to float64 stays above about u ||B||; within a hundred times that, sums of many
+// numbers may rise and fall at will.
+constexpr double unit_roundoff = 0x1p-53;
+constexpr double room_above_rounding = 100;
+
+/// sum A_i |x_i| of each column.
+Eigen::RowVectorXd area_sums(const Eigen::VectorXd& areas, const PatchField& x) {
+  return sum_over_rows(x.rows(), x.cols(), [&](Eigen::Index first, Eigen::Index count) {
+    Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(x.cols());
+    for (Eigen::Index i = first; i < first + count; ++i) sum += areas[i] * x.row(i).cwiseAbs();
+    return sum;
+  });
+}
 
 }  // namespace
 
@@ -74,7 +85,11 @@ bool IterationWatch::next(const PatchField& residual, const PatchField& radiosit
   iteration.relative_residual = system_->relative_norms(residual).maxCoeff();
   iteration.error_bound = bound_of(residual, radiosity);
   iteration.radiosity = &radiosity;
-  return record(iteration) && progress(iteration);
+  if (!record(iteration) || !progress(iteration)) return false;
+  if (!expects_decrease_ || !power_rises(residual, radiosity)) return true;
+  return stop(Stopped::diverged,
+              "diverges: the light on its way has grown over " + std::to_string(rises_of_divergence) +
+                  " iterations in a row, at iteration " + std::to_string(iteration.number) + row_gain());
 }
 
 bool IterationWatch::next(const Eigen::RowVectorXd& relative_norms) {
@@ -97,41 +112,51 @@ bool IterationWatch::stop(Stopped reason, std::string message) {
   return false;
 }
 
+std::string IterationWatch::row_gain() const {
+  const auto returned =
+      system_->reflectance().cwiseProduct(system_->row_sums().replicate(1, system_->columns()));
+  const double gain = returned.maxCoeff();
+  // rows that rounding has left just above 1 explain nothing
+  if (gain < 1 + 1e-9) return {};
+  std::ostringstream text;
+  text << "; a row sum of the operator times its reflectance reaches " << gain;
+  return text.str();
+}
+
+bool IterationWatch::power_rises(const PatchField& residual, const PatchField& radiosity) {
+  const Eigen::RowVectorXd power = area_sums(system_->areas(), residual);
+  if (power_.size() == 0) {
+    rises_.setZero(power.size());
+  } else {
+    rises_ = (power.array() > power_.array()).select(rises_.array() + 1, 0);
+  }
+  power_ = power;
+  if (rises_.maxCoeff() < rises_of_divergence) return false;
+  const Eigen::RowVectorXd floor =
+      room_above_rounding * unit_roundoff * area_sums(system_->areas(), radiosity);
+  return (rises_.array() >= rises_of_divergence && power.array() > floor.array()).any();
+}
+
 bool IterationWatch::progress(const Iteration& iteration) {
   const double residual = iteration.relative_residual;
   const std::string at = " at iteration " + std::to_string(iteration.number);
-  if (!std::isfinite(residual)) {
-    return stop(Stopped::diverged, "the residual is not a number" + at);
-  }
+  if (!std::isfinite(residual))
+    return stop(Stopped::diverged, "the residual is not a number" + at + row_gain());
   if (holds(iteration, margin_)) return stop(Stopped::converged, {});
-  rises_ = residual > previous_ ? rises_ + 1 : 0;
-  previous_ = residual;
-  if (residual < best_) {
-    best_ = residual;
-    since_best_ = 0;
-  } else {
-    ++since_best_;
+  if (residual > growth_of_divergence * best_) {
+    return stop(Stopped::diverged, "diverges: the residual has grown a million times" + at + row_gain());
   }
-  double floor = 0;
-  if (rises_ >= rises_of_divergence || since_best_ >= window_of_stagnation) {
-    const PatchField* radiosity = iteration.radiosity;
-    if (radiosity) floor = rounding_floor * system_->relative_norms(*radiosity).maxCoeff();
-  }
-  const bool above_rounding = residual > 100 * floor;
-  const bool keeps_rising = expects_decrease_ && rises_ >= rises_of_divergence && above_rounding;
-  if (keeps_rising || residual > growth_of_divergence * best_) {
-    const double gain =
-        system_->reflectance().cwiseProduct(system_->row_sums().replicate(1, system_->columns())).maxCoeff();
-    std::ostringstream why;
-    why << "diverges: the residual has grown" << at;
-    if (gain > 1) why << "; a row of the operator times its reflectance reaches " << gain;
-    return stop(Stopped::diverged, why.str());
-  }
+  since_best_ = residual < best_ ? 0 : since_best_ + 1;
+  best_ = std::min(best_, residual);
   if (since_best_ >= window_of_stagnation) {
     std::ostringstream why;
-    why << "no progress below a relative residual of " << best_ << " over " << window_of_stagnation
-        << " iterations" << at;
-    if (!above_rounding) why << "; this is the rounding of float64 at this ratio of radiosity to emission";
+    why << "no progress over " << window_of_stagnation << " iterations" << at
+        << ", below a relative residual of " << best_;
+    if (iteration.radiosity) {
+      const double floor = unit_roundoff * system_->relative_norms(*iteration.radiosity).maxCoeff();
+      if (best_ < room_above_rounding * floor)
+        why << ": the rounding of float64 at this ratio of radiosity to emission";
+    }
     return stop(Stopped::stagnated, why.str());
   }
   if (iteration.number >= options_->max_iterations) {

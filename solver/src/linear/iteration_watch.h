@@ -44,6 +44,8 @@ class IterationWatch {
   bool holds(const Iteration& iteration, double margin) const;
   bool record(Iteration iteration);
   bool progress(const Iteration& iteration);
+  bool power_rises(const PatchField& residual, const PatchField& radiosity);
+  std::string row_gain() const;
 
   const RadiositySystem* system_;
   const SolveOptions* options_;
@@ -52,9 +54,9 @@ class IterationWatch {
   bool expects_decrease_ = false;
   double margin_ = 1;
   double best_ = std::numeric_limits<double>::infinity();
-  double previous_ = std::numeric_limits<double>::infinity();
   int since_best_ = 0;
-  int rises_ = 0;
+  Eigen::RowVectorXd power_;  ///< of the last residual, each channel
+  Eigen::RowVectorXi rises_;  ///< in a row, each channel
 };
 
 }  // namespace luxel

@@ -23,11 +23,13 @@ std::shared_ptr<LuFactor<Real>> factor(const RadiositySystem& system, const std:
   auto result = std::make_shared<LuFactor<Real>>(n);
   tbb::parallel_for(0, n, [&](int a) {
     Real* above = result->column(a);
-    for (int b = 0; b < a; ++b) {
-      const double g = exchange(patches[a], patches[b]);
-      above[b] = static_cast<Real>(-reflected[b] * g);
-      result->column(b)[a] = static_cast<Real>(-reflected[a] * g);
-    }
+    exchange.lower_row(patches[a], [&](const auto* row) {
+      for (int b = 0; b < a; ++b) {
+        const double g = static_cast<double>(row[patches[b]]);
+        above[b] = static_cast<Real>(-reflected[b] * g);
+        result->column(b)[a] = static_cast<Real>(-reflected[a] * g);
+      }
+    });
     above[a] = static_cast<Real>(1 - reflected[a] * exchange.diagonal(patches[a]));
   });
   return result->factor() ? result : nullptr;

@@ -1,7 +1,8 @@
 #include "luxel/solve.h"
 
-#include <cmath>
+#include <algorithm>
 #include <string>
+#include <utility>
 
 #include "linear/methods.h"
 #include "linear/singular.h"
@@ -14,9 +15,13 @@ namespace {
 // repair.
 constexpr int fresh_starts = 4;
 
-// Right-hand sides of one reflectance from which one factorisation is cheaper than conjugate gradients for
-// each, and the size up to which its cubic cost stays below that (measured: docs/decisions/0009-solvers.md).
-constexpr Eigen::Index columns_for_cholesky = 10;
+// A factorisation costs as much as conjugate gradients for about N / 200 columns of one reflectance (N =
+// 4,704: 24 columns at reflectance 0.8, fewer above; docs/decisions/0009-solvers.md), and never pays for a
+// channel or three.
+constexpr Eigen::Index patches_per_column = 200;
+constexpr Eigen::Index least_columns_for_cholesky = 10;
+
+// Beyond this its N^2 / 2 float32 numbers are 0.5 GB, and it would take hundreds of columns to pay.
 constexpr Eigen::Index size_for_cholesky = 16'000;
 
 void require(bool holds, const std::string& message) {
@@ -44,13 +49,14 @@ void check(const TransportOperator& transport, const PatchField& reflectance, co
 Method choose(const RadiositySystem& system, const SolveOptions& options) {
   if (options.bounces) return Method::neumann;
   if (!system.transport().symmetric()) return Method::gmres;
-  if (system.transport().entries() && system.size() <= size_for_cholesky) {
-    for (const auto& group : system.groups_of_equal_reflectance()) {
-      if (static_cast<Eigen::Index>(group.size()) < columns_for_cholesky) return Method::cg;
-    }
-    return system.columns() > 0 ? Method::cholesky : Method::cg;
-  }
-  return Method::cg;
+  const auto pays = [&](const auto& group) {
+    return static_cast<Eigen::Index>(group.size()) >=
+           std::max(least_columns_for_cholesky, system.size() / patches_per_column);
+  };
+  const auto groups = system.groups_of_equal_reflectance();
+  const bool many = !groups.empty() && std::all_of(groups.begin(), groups.end(), pays);
+  return many && system.transport().entries() && system.size() <= size_for_cholesky ? Method::cholesky
+                                                                                    : Method::cg;
 }
 
 void check_method(Method method, const TransportOperator& transport, const SolveOptions& options) {
@@ -112,11 +118,11 @@ RadiositySolution solve(const TransportOperator& transport, const PatchField& re
   ErrorBound bound(system);
   if (bound.worth_sharpening()) bound.sharpen();
   IterationWatch watch(system, options, &bound, report);
-  PatchField residual;
   for (int start = 0; start <= fresh_starts; ++start) {
     solution.radiosity = run(system, std::move(solution.radiosity), options, method, watch);
-    solution.irradiance = system.apply(solution.radiosity);
-    residual = system.residual(solution.radiosity, solution.irradiance);
+    Balance balance = system.balance(solution.radiosity);
+    solution.irradiance = std::move(balance.irradiance);
+    const PatchField& residual = balance.residual;
     report.relative_residual = system.relative_norms(residual).maxCoeff();
     report.error_bound = bound.relative(residual, solution.radiosity);
     report.converged = watch.satisfied(residual, solution.radiosity);

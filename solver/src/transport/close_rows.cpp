@@ -18,6 +18,13 @@ namespace {
 // Row error that a scaled enclosure may keep; what is left then is rounding and goes to the diagonal.
 constexpr double closed_within = 1e-12;
 
+/// Rounds towards 0, so that rows never sum to more than in float64: what is missing fits a diagonal >= 0.
+template <class Real>
+Real rounded_down(double value) {
+  const Real nearest = static_cast<Real>(value);
+  return nearest > value ? std::nextafter(nearest, Real(0)) : nearest;
+}
+
 /// G_ij <- d_i d_j G_ij, never above what either patch can send; the largest |d_i d_j - 1| of an entry.
 template <class Real>
 double scale_entries(ExchangeMatrix& matrix, const std::vector<double>& areas, const std::vector<double>& d) {
@@ -30,9 +37,7 @@ double scale_entries(ExchangeMatrix& matrix, const std::vector<double>& areas, c
             const double factor = d[i] * d[j];
             if (row[j] == 0 || factor == 1) continue;
             largest = std::max(largest, std::abs(factor - 1));
-            row[j] = static_cast<Real>(row[j] * factor);
-            const double most = std::min(areas[i], areas[j]);
-            if (row[j] > most) row[j] = std::nextafter(static_cast<Real>(most), Real(0));
+            row[j] = rounded_down<Real>(std::min(row[j] * factor, std::min(areas[i], areas[j])));
           }
         }
         return largest;
@@ -115,7 +120,7 @@ ClosedOperator close_rows(ExchangeMatrix exchange_areas, std::vector<double> are
     report.largest_correction = scale_entries(exchange_areas, areas, scaling.factors);
     sums = row_sums(exchange_areas, areas);
     for (std::size_t i = 0; i < size; ++i) {
-      if (active[i]) diagonal[i] = areas[i] - sums[i] * areas[i];
+      if (active[i]) diagonal[i] = std::max(0.0, areas[i] - sums[i] * areas[i]);
     }
     break;
   }
