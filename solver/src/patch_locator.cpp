@@ -119,6 +119,19 @@ void PatchLocator::add_grid(Sheet& sheet, const std::vector<int>& patches) {
   cells_.push_back(static_cast<int>(candidates_.size()));
 }
 
+bool PatchLocator::contains(int patch, const Vec3& point) const {
+  const auto& corners = mesh_.corners[patch];
+  const int count = mesh_.corner_count(patch);
+  const Vec3& normal = mesh_.normals[patch];
+  const Vec3* from = &mesh_.vertices[corners[count - 1]];
+  for (int k = 0; k < count; ++k) {
+    const Vec3* to = &mesh_.vertices[corners[k]];
+    if (normal.dot((*to - *from).cross(point - *from)) < 0) return false;
+    from = to;
+  }
+  return true;
+}
+
 /// Distance of a point in the patch's plane from its outline [m], positive inside.
 double PatchLocator::depth(int patch, const Vec3& point) const {
   const auto& corners = mesh_.corners[patch];
@@ -156,8 +169,10 @@ int PatchLocator::patch_at(int triangle, bool front, const Vec3& point) const {
   double best = -tolerance_;
   for (int candidate : candidates) {
     if (candidate < 0) return ~candidate;
+    if (contains(candidate, point)) return candidate;
+  }
+  for (int candidate : candidates) {
     const double inside = depth(candidate, point);
-    if (inside >= 0) return candidate;
     if (inside >= best) {
       best = inside;
       nearest = candidate;

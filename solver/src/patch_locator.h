@@ -33,6 +33,7 @@ class PatchLocator {
   };
 
   void add_grid(Sheet& sheet, const std::vector<int>& patches);
+  bool contains(int patch, const Vec3& point) const;
   double depth(int patch, const Vec3& point) const;
   bool covers(int patch, const Frame& frame, int i, int j) const;
 

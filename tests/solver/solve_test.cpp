@@ -168,6 +168,7 @@ TEST_P(EveryMethod, SolvesThirtyRightHandSidesAtOnce) {
 
     EXPECT_TRUE(solution.report.converged) << solution.report.message;
     EXPECT_LT((solution.radiosity - exact(transport, reflectance, emission)).cwiseAbs().maxCoeff(), 1e-9);
+    // sums of 80 numbers up to 1
     EXPECT_LT((solution.irradiance - transport.rows() * solution.radiosity).cwiseAbs().maxCoeff(), 1e-14);
   }
 }
@@ -267,6 +268,33 @@ TEST_P(EveryMethod, SaysThatTheIterationsAreUsedUp) {
   EXPECT_LE(report.iterations, 2);
   EXPECT_EQ(report.converged, report.relative_residual <= 1e-15);
   EXPECT_EQ(report.converged, report.message.empty());
+}
+
+TEST_P(EveryMethod, LeavesAnUnlitEnclosureExactlyDark) {
+  const auto transport = test::side_by_side(test::random_enclosure(20, 4), test::random_enclosure(20, 5));
+  PatchField emission = PatchField::Zero(40, 1);
+  emission.topRows(20).setOnes();
+
+  const auto solution = solve(transport, PatchField::Constant(40, 1, 0.8), emission, options(1e-12));
+
+  EXPECT_NEAR(solution.radiosity(0, 0), 5, 1e-10);
+  EXPECT_EQ(solution.radiosity.bottomRows(20), PatchField::Zero(20, 1));
+  EXPECT_EQ(solution.irradiance.bottomRows(20), PatchField::Zero(20, 1));
+}
+
+TEST_P(EveryMethod, ReachesTwelveDigitsInALargeWhiteFurnace) {
+  // 1 / (1 - rho) = 1000 magnifies the rounding of sums of 1,500 numbers in float64
+  const auto transport = test::random_enclosure(1500, 70, Precision::float32);
+  const bool quick = GetParam() == Method::cg || GetParam() == Method::gmres ||
+                     GetParam() == Method::cholesky || GetParam() == Method::lu;
+  const double rho = quick ? 0.999 : 0.9;
+
+  const auto solution =
+      solve(transport, PatchField::Constant(1500, 1, rho), PatchField::Ones(1500, 1), options(1e-12));
+
+  EXPECT_TRUE(solution.report.converged) << solution.report.message;
+  // the row sums of the test's operator are 1 to sqrt(N) u, magnified by 1 / (1 - rho)
+  EXPECT_LT((solution.radiosity.array() * (1 - rho) - 1).abs().maxCoeff(), 1e-11);
 }
 
 TEST(Solve, RefusesWhatTheCallerMayNotAsk) {

@@ -85,10 +85,18 @@ std::string write(const CsrDocument& document, const std::string& path) try {
         .append(document.indptr.data(), document.indptr.size());
     Column indices(file, "indices", H5T_STD_I32LE, H5T_NATIVE_INT32, document.indptr.back());
     Column data(file, "data", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, document.indptr.back());
-    document.pieces([&](const CsrPiece& piece) {
-      indices.append(piece.indices.data(), piece.indices.size());
-      data.append(piece.data.data(), piece.data.size());
+    std::string trouble = "the rows ended early";
+    const bool complete = document.pieces([&](const CsrPiece& piece) {
+      try {
+        indices.append(piece.indices.data(), piece.indices.size());
+        data.append(piece.data.data(), piece.data.size());
+        return true;
+      } catch (const Failure& failure) {
+        trouble = failure.what();
+        return false;
+      }
     });
+    if (!complete) return trouble;
   }
   file.close("finish the file (is the disk full?)");
   return "";

@@ -18,11 +18,11 @@ struct CsrDocument {
   std::span<const std::int64_t> indptr;  ///< rows + 1
   std::span<const double> areas;         ///< rows [m2]
   std::int64_t columns = 0;
-  /// Calls back for every piece in order; may throw.
-  std::function<void(const std::function<void(const CsrPiece&)>&)> pieces;
+  /// Hands out every piece in order until the taker returns false; false if it did not come to the end.
+  std::function<bool(const std::function<bool(const CsrPiece&)>& take)> pieces;
 };
 
-/// Writes the document; gives the reason if it could not, else "". Lets exceptions of `pieces` pass.
+/// Writes the document; gives the reason if it could not, else "". No exception crosses, either way.
 using CsrWriter = std::string (*)(const CsrDocument& document, const std::string& path);
 
 /// The symbol of the module luxel_hdf5 that holds its CsrWriter; its number changes with CsrDocument.

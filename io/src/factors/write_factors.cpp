@@ -4,6 +4,7 @@
 
 #include <array>
 #include <charconv>
+#include <exception>
 #include <numeric>
 #include <string>
 #include <vector>
@@ -94,6 +95,20 @@ void write_csv(const fs::path& path, const DenseOperator& transport, int signifi
   file.commit();
 }
 
+/// The entries of a band that are not 0, in place of what the vectors held.
+void take_entries(const FactorBand& band, std::vector<std::int32_t>& indices, std::vector<double>& data) {
+  indices.clear();
+  data.clear();
+  for (int k = 0; k < band.rows; ++k) {
+    const auto row = band.row(k);
+    for (int j = 0; j < band.columns; ++j) {
+      if (row[j] == 0) continue;
+      indices.push_back(j);
+      data.push_back(row[j]);
+    }
+  }
+}
+
 void write_hdf5(const fs::path& path, const DenseOperator& transport, const Progress& progress) {
   const auto write = *static_cast<const CsrWriter*>(module_symbol("luxel_hdf5", csr_writer_symbol, path));
   OutputFile file(path);
@@ -105,25 +120,26 @@ void write_hdf5(const fs::path& path, const DenseOperator& transport, const Prog
   document.indptr = indptr;
   document.areas = transport.areas();
   document.columns = transport.size();
-  document.pieces = [&](const std::function<void(const CsrPiece&)>& take) {
+  std::exception_ptr interruption;
+  document.pieces = [&](const std::function<bool(const CsrPiece&)>& take) {
+    struct NotTaken {};
     std::vector<std::int32_t> indices;
     std::vector<double> data;
-    for_each_band(transport, [&](const FactorBand& band) {
-      indices.clear();
-      data.clear();
-      for (int k = 0; k < band.rows; ++k) {
-        const auto row = band.row(k);
-        for (int j = 0; j < band.columns; ++j) {
-          if (row[j] == 0) continue;
-          indices.push_back(j);
-          data.push_back(row[j]);
-        }
-      }
-      take({indices, data});
-      tell(progress, band);
-    });
+    try {
+      for_each_band(transport, [&](const FactorBand& band) {
+        take_entries(band, indices, data);
+        if (!take({indices, data})) throw NotTaken();
+        tell(progress, band);
+      });
+      return true;
+    } catch (NotTaken) {
+    } catch (...) {
+      interruption = std::current_exception();
+    }
+    return false;
   };
   const std::string reason = write(document, file.working_path().string());
+  if (interruption) std::rethrow_exception(interruption);
   if (!reason.empty()) throw InputError(path.string() + ": cannot be written: " + reason);
   file.commit();
 }

@@ -34,7 +34,9 @@ struct Shadows {
 
   /// How two edges of different cones lie for every eye: 0 apart, +1 on one line with the same side inside,
   /// -1 on one line with opposite sides inside.
-  int tie(int e, int o) const { return ties[static_cast<std::size_t>(e) * edges.size() + static_cast<std::size_t>(o)]; }
+  int tie(int e, int o) const {
+    return ties[static_cast<std::size_t>(e) * edges.size() + static_cast<std::size_t>(o)];
+  }
   int count() const { return static_cast<int>(begin.size()) - 1; }
   void clear();
 };
@@ -57,6 +59,8 @@ class HiddenWorkspace {
 /// boundary of the hidden region): each edge's visible part is its line's interval within the inner polygon
 /// less the union of the intervals that other cones cover, so that the cost grows with edges squared and not
 /// with subsets of cones. The points lie in front of the inner polygon and it in front of them.
+/// A point in one plane with edges of two cones that are no tie may see their order wrong by rounding: keep
+/// points off symmetric places.
 /// @param inner  counter-clockwise seen from the points
 void hidden_shares(const OuterPoints& points, const Vec3& normal, const Polygon& inner,
                    const Shadows& shadows, HiddenWorkspace& workspace, std::vector<double>& shares);

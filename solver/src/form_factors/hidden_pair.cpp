@@ -25,6 +25,10 @@ constexpr std::size_t most_cells = 400;
 // cheaper to look first.
 constexpr double cut_first = 2e-3;
 
+// Where the integral says that this share of a cell's exchange is hidden, it is looked at whether all of it
+// is.
+constexpr double nearly_all = 0.9;
+
 double side(const Span& span) {
   return span.high > -span.low ? span.high : span.low;
 }
@@ -50,7 +54,8 @@ HiddenPair::Ends HiddenPair::ends(int s, int t, const std::vector<Candidate>& ca
   return ends;
 }
 
-// A patch's own polygon does not hide it; noise might say otherwise. Neither does the body that it is part of.
+// A patch's own polygon does not hide it; noise might say otherwise. Neither does the body that it is part
+// of.
 bool HiddenPair::own(const Occluder& occluder, const Ends& ends) const {
   const int outer = mesh_.polygons[ends.outer->patch], inner = mesh_.polygons[ends.inner->patch];
   for (int f = occluder.begin; f < occluder.end; ++f) {
@@ -60,7 +65,8 @@ bool HiddenPair::own(const Occluder& occluder, const Ends& ends) const {
   return false;
 }
 
-std::vector<Polygon> HiddenPair::cells_by_side(const Ends& ends, const std::vector<Candidate>& candidates) const {
+std::vector<Polygon> HiddenPair::cells_by_side(const Ends& ends,
+                                               const std::vector<Candidate>& candidates) const {
   std::vector<Polygon> cells{ends.cell};
   const double length = ends.outer->edge;
   for (const Candidate& candidate : candidates) {
@@ -198,7 +204,7 @@ HiddenPart HiddenPair::operator()(int s, int t, const std::vector<Candidate>& ca
   const double whole = area(pair.cell, normal);
   if (!(whole > sliver_share * pair.outer->area)) return part;
   const std::vector<Polygon> cells = cells_by_side(pair, candidates);
-  std::size_t dark = 0;
+  std::size_t dark = 0, covered = 0;
   for (const Polygon& cell : cells) {
     const double share = area(cell, normal) / whole;
     if (!(share > sliver_share)) {
@@ -210,9 +216,9 @@ HiddenPart HiddenPair::operator()(int s, int t, const std::vector<Candidate>& ca
     if (cast == Cast::everything) {
       ++dark;
       if (cells.size() > 1) {
-        part.value += exchange_area(std::span(cell.corners.data(), static_cast<std::size_t>(cell.count)),
-                                    std::span(pair.target.corners.data(),
-                                              static_cast<std::size_t>(pair.target.count)));
+        part.value +=
+            exchange_area(std::span(cell.corners.data(), static_cast<std::size_t>(cell.count)),
+                          std::span(pair.target.corners.data(), static_cast<std::size_t>(pair.target.count)));
       }
       continue;
     }
@@ -228,10 +234,13 @@ HiddenPart HiddenPair::operator()(int s, int t, const std::vector<Candidate>& ca
                      ? quadrature.smooth(smooth, unhidden * share, area(cell, normal), allowed)
                      : quadrature.adaptive(smooth, area(cell, normal), allowed);
     }
+    // several occluders may hide together what none hides alone
+    if (integral.value > nearly_all * unhidden * share && quadrature.cover(cell)) ++covered;
     part.value += integral.value;
     part.error += integral.error;
   }
-  part.all = dark == cells.size();
+  const bool rest_is_error = unhidden - part.value <= 4 * tolerance + part.error;
+  part.all = dark == cells.size() || (dark + covered == cells.size() && rest_is_error);
   if (part.all) part.value = unhidden;
   part.value = std::clamp(part.value, 0.0, unhidden);
   return part;

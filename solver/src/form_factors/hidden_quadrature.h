@@ -9,10 +9,6 @@
 
 namespace luxel {
 
-/// Quadrature points of a convex polygon with area weights: exact for polynomials of degree 1, 2 or 3, 4, 6 for
-/// order 1 to 4 (triangles: 1, 3, 6, 12 points; quads: order^2; others: cut into these).
-void add_points(const Polygon& cell, int order, OuterPoints& points);
-
 /// An integral over a cell and what it may be wrong by.
 struct HiddenIntegral {
   double value = 0;
@@ -38,6 +34,9 @@ class HiddenQuadrature {
 
   /// Over cells that may hold kinks: two rules of equal degree side by side, halved where they disagree.
   HiddenIntegral adaptive(std::span<const Polygon> cells, double area, double tolerance);
+
+  /// Whether the shadows hide the inner polygon as a whole from every point of a rule over the cell.
+  bool cover(const Polygon& cell);
 
  private:
   double distance_to_edges(const Vec3& point) const;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 #include "linear/methods.h"
 #include "linear/singular.h"
@@ -117,11 +118,11 @@ RadiositySolution solve(const TransportOperator& transport, const PatchField& re
   ErrorBound bound(system);
   if (bound.worth_sharpening()) bound.sharpen();
   IterationWatch watch(system, options, &bound, report);
-  PatchField residual;
   for (int start = 0; start <= fresh_starts; ++start) {
     solution.radiosity = run(system, std::move(solution.radiosity), options, method, watch);
-    solution.irradiance = system.apply(solution.radiosity);
-    residual = system.residual(solution.radiosity, solution.irradiance);
+    Balance balance = system.balance(solution.radiosity);
+    solution.irradiance = std::move(balance.irradiance);
+    const PatchField& residual = balance.residual;
     report.relative_residual = system.relative_norms(residual).maxCoeff();
     report.error_bound = bound.relative(residual, solution.radiosity);
     report.converged = watch.satisfied(residual, solution.radiosity);

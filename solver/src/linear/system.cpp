@@ -1,8 +1,29 @@
 #include "linear/system.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "linear/columns.h"
 
 namespace luxel {
+
+namespace {
+
+// Within a factor of two B - c is exact (Sterbenz 1974), and nobody is faint beside the level.
+constexpr double uniform_ratio = 0.5;
+
+/// The middle of each column that is uniform within a factor of two, 0 for the others.
+Eigen::RowVectorXd uniform_level(const PatchField& radiosity) {
+  Eigen::RowVectorXd level = Eigen::RowVectorXd::Zero(radiosity.cols());
+  if (radiosity.rows() == 0) return level;
+  const Eigen::RowVectorXd least = radiosity.colwise().minCoeff(), most = radiosity.colwise().maxCoeff();
+  for (Eigen::Index c = 0; c < level.size(); ++c) {
+    if (least[c] > 0 && least[c] >= uniform_ratio * most[c]) level[c] = 0.5 * (least[c] + most[c]);
+  }
+  return level;
+}
+
+}  // namespace
 
 RadiositySystem::RadiositySystem(const TransportOperator& transport, const PatchField& reflectance,
                                  const PatchField& emission)
@@ -17,14 +38,29 @@ PatchField RadiositySystem::apply(const PatchField& x) const {
   return y;
 }
 
-PatchField RadiositySystem::residual(const PatchField& radiosity, const PatchField& irradiance) const {
-  PatchField residual(size(), columns());
+// Where B is nearly uniform, as in white rooms, F B is c s + F (B - c) for a level c, and the residual
+// (E - (B - c)) - c (1 - rho s) + rho F (B - c): its rounding is that of E and B - c, not of B, which may be
+// 1 / (1 - rho) times larger. Where B is not, subtracting a level would drown the faint patches, so that c =
+// 0.
+Balance RadiositySystem::balance(const PatchField& radiosity) const {
+  const Eigen::RowVectorXd level = uniform_level(radiosity);
+  const PatchField variation = radiosity.rowwise() - level;
+  const auto sums = row_sums();
+  Balance balance{apply(variation), PatchField(size(), columns())};
   for_row_blocks(size(), [&](Eigen::Index first, Eigen::Index count) {
-    const auto rows = [&](const PatchField& field) { return field.middleRows(first, count).array(); };
-    residual.middleRows(first, count) =
-        (rows(*emission_) - rows(radiosity)) + rows(*reflectance_) * rows(irradiance);
+    for (Eigen::Index i = first; i < first + count; ++i) {
+      for (Eigen::Index c = 0; c < columns(); ++c) {
+        const double rho = (*reflectance_)(i, c), emitted = (*emission_)(i, c);
+        const double lost = level[c] * std::fma(-rho, sums[i], 1.0);
+        double& irradiance = balance.irradiance(i, c);
+        // B = E where nothing reflects, exactly
+        balance.residual(i, c) =
+            rho == 0 ? emitted - radiosity(i, c) : (emitted - variation(i, c)) - lost + rho * irradiance;
+        irradiance += level[c] * sums[i];
+      }
+    }
   });
-  return residual;
+  return balance;
 }
 
 Eigen::RowVectorXd RadiositySystem::relative_norms(const PatchField& residual) const {

@@ -7,6 +7,12 @@
 
 namespace luxel {
 
+/// What arrives on every patch, and by how much B misses its equation; N x m.
+struct Balance {
+  PatchField irradiance;
+  PatchField residual;
+};
+
 /// The system B = E + K B, K = rho F, for m channels: what every method is given. It refers to its parts,
 /// which must outlive it.
 class RadiositySystem {
@@ -24,10 +30,10 @@ class RadiositySystem {
 
   /// F X, N x m. Cost: one application of the operator.
   PatchField apply(const PatchField& x) const;
-  /// E - B + rho H, for H = F B.
-  PatchField residual(const PatchField& radiosity, const PatchField& irradiance) const;
+  /// H = F B with E - B + rho H. Cost: one application.
+  Balance balance(const PatchField& radiosity) const;
   /// E - B + K B. Cost: one application.
-  PatchField residual(const PatchField& radiosity) const { return residual(radiosity, apply(radiosity)); }
+  PatchField residual(const PatchField& radiosity) const { return balance(radiosity).residual; }
 
   /// Area-weighted ||r|| / ||E|| of each channel; 0 where E = 0 (B is exactly 0 there).
   Eigen::RowVectorXd relative_norms(const PatchField& residual) const;
