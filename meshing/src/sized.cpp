@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "face_locator.h"
@@ -64,7 +65,7 @@ class SizedMesher {
   Filled fill(double edge_length, const Progress& progress) {
     Filled result;
     result.vertices = facets_.vertices;
-    LongestEdgeRefiner refiner(result.vertices, plan_.halved, plan_.polygon_of_halved, plan_.watched);
+    LongestEdgeRefiner refiner = halving(result.vertices);
     refiner.refine(longest_of_halved * edge_length);
     plan_.edges.divide(result.vertices, edge_length,
                        [&](int a, int b) { return refiner.points_between(a, b); });
@@ -78,8 +79,10 @@ class SizedMesher {
       if (progress && !progress("meshing", ++done, static_cast<double>(plan_.filled.size())))
         throw Cancelled();
     }
-    result.triangles.insert(result.triangles.end(), refiner.triangles().begin(), refiner.triangles().end());
-    result.polygons.insert(result.polygons.end(), refiner.tags().begin(), refiner.tags().end());
+    const auto halves = refiner.triangles();
+    const auto tags = refiner.tags();
+    result.triangles.insert(result.triangles.end(), halves.begin(), halves.end());
+    result.polygons.insert(result.polygons.end(), tags.begin(), tags.end());
     return result;
   }
 
@@ -91,15 +94,23 @@ class SizedMesher {
     return facets_.front[facet] + facets_.back[facet];
   }
 
+  LongestEdgeRefiner halving(std::vector<Vec3>& vertices) const {
+    const int count = static_cast<int>(vertices.size());
+    return {vertices, make_split_meshes(plan_.halved, plan_.polygon_of_halved, count), plan_.watched};
+  }
+
   double count_halved(double longest) {
-    if (!trial_ || longest < finest_) {
+    if (!trial_) {
       trial_vertices_ = facets_.vertices;
-      trial_.emplace(trial_vertices_, plan_.halved, plan_.polygon_of_halved, plan_.watched);
+      trial_.emplace(halving(trial_vertices_));
+    }
+    if (longest < finest_) {
       trial_->refine(longest);
       finest_ = longest;
+      const std::vector<int> tags = trial_->tags();
       double weighted = 0;
-      for (const int p : trial_->tags()) weighted += sides(p);
-      sides_of_halved_ = weighted / static_cast<double>(trial_->tags().size());
+      for (const int p : tags) weighted += sides(p);
+      sides_of_halved_ = weighted / static_cast<double>(tags.size());
     }
     return sides_of_halved_ * static_cast<double>(trial_->count(longest));
   }
@@ -108,7 +119,7 @@ class SizedMesher {
   SurfacePlan plan_;
   std::vector<Vec3> trial_vertices_;
   std::optional<LongestEdgeRefiner> trial_;
-  double finest_ = 0;
+  double finest_ = std::numeric_limits<double>::infinity();  // longest edge of the trial
   double sides_of_halved_ = 1;
 };
 
