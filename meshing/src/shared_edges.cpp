@@ -31,10 +31,12 @@ int SharedEdges::parts(double length, double edge_length) {
 void SharedEdges::divide(std::vector<Vec3>& vertices, double edge_length,
                          const std::function<std::optional<std::vector<int>>(int, int)>& given) {
   between_.assign(ends_.size(), {});
+  given_.assign(ends_.size(), false);
   for (int e = 0; e < size(); ++e) {
     const auto [a, b] = ends_[e];
     if (auto points = given(a, b)) {
       between_[e] = *std::move(points);
+      given_[e] = true;
       continue;
     }
     const Vec3 start = vertices[a];
@@ -45,6 +47,16 @@ void SharedEdges::divide(std::vector<Vec3>& vertices, double edge_length,
       vertices.push_back(start + d * (static_cast<double>(k) / count));
     }
   }
+}
+
+void SharedEdges::insert(int edge, int a, int b, int m) {
+  auto& between = between_[edge];
+  if (a == ends_[edge][0] || b == ends_[edge][0]) {
+    between.insert(between.begin(), m);
+    return;
+  }
+  const auto first = std::find_if(between.begin(), between.end(), [&](int v) { return v == a || v == b; });
+  between.insert(first + 1, m);
 }
 
 std::vector<int> SharedEdges::points(int a, int b) const {
