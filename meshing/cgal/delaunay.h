@@ -5,10 +5,10 @@
 #include <CGAL/Triangulation_face_base_with_info_2.h>
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
 
-#include <cstdint>
 #include <memory>
 #include <unordered_set>
 
+#include "edge_key.h"
 #include "triangulate.h"
 
 namespace luxel {
@@ -22,11 +22,6 @@ using FaceBase =
                                               CGAL::Constrained_triangulation_face_base_2<Kernel>>;
 using Delaunay = CGAL::Constrained_Delaunay_triangulation_2<
     Kernel, CGAL::Triangulation_data_structure_2<VertexBase, FaceBase>, CGAL::No_constraint_intersection_tag>;
-
-/// A number for the edge between two vertices, whatever its direction.
-inline std::uint64_t edge_key(int a, int b) {
-  return static_cast<std::uint64_t>(std::min(a, b)) << 32 | static_cast<std::uint32_t>(std::max(a, b));
-}
 
 /// The domain's constrained Delaunay triangulation and its vertices in the domain's order, whose places there
 /// they carry; nothing if borders or creases cross or points coincide.

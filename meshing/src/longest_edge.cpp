@@ -2,13 +2,11 @@
 
 #include <algorithm>
 
+#include "edge_key.h"
+
 namespace luxel {
 
 namespace {
-
-std::uint64_t key(int a, int b) {
-  return static_cast<std::uint64_t>(std::min(a, b)) << 32 | static_cast<std::uint32_t>(std::max(a, b));
-}
 
 std::size_t triangles_of(const std::vector<std::unique_ptr<SplitMesh>>& meshes) {
   std::size_t total = 0;
@@ -27,7 +25,7 @@ LongestEdgeRefiner::LongestEdgeRefiner(std::vector<Vec3>& vertices,
                                        std::vector<std::unique_ptr<SplitMesh>> meshes,
                                        const std::vector<std::array<int, 2>>& watched)
     : vertices_(vertices), meshes_(std::move(meshes)), initial_(triangles_of(meshes_)) {
-  for (const auto& [a, b] : watched) midpoints_.emplace(key(a, b), -1);
+  for (const auto& [a, b] : watched) midpoints_.emplace(edge_key(a, b), -1);
   for (int i = 0; i < static_cast<int>(meshes_.size()); ++i) {
     for (int e = 0; e < meshes_[i]->edge_count(); ++e) push(i, e);
   }
@@ -43,10 +41,10 @@ void LongestEdgeRefiner::split(const Entry& longest) {
   const auto [a, b] = longest.ends;
   const int m = static_cast<int>(vertices_.size());
   vertices_.push_back(0.5 * (vertices_[a] + vertices_[b]));
-  if (const auto found = midpoints_.find(key(a, b)); found != midpoints_.end()) {
+  if (const auto found = midpoints_.find(edge_key(a, b)); found != midpoints_.end()) {
     found->second = m;
-    midpoints_.emplace(key(a, m), -1);
-    midpoints_.emplace(key(m, b), -1);
+    midpoints_.emplace(edge_key(a, m), -1);
+    midpoints_.emplace(edge_key(m, b), -1);
   }
   for (const int edge : meshes_[longest.mesh]->split(longest.edge, m)) push(longest.mesh, edge);
 }
@@ -85,7 +83,7 @@ std::vector<int> LongestEdgeRefiner::tags() const {
 }
 
 std::optional<std::vector<int>> LongestEdgeRefiner::points_between(int a, int b) const {
-  const auto found = midpoints_.find(key(a, b));
+  const auto found = midpoints_.find(edge_key(a, b));
   if (found == midpoints_.end()) return std::nullopt;
   if (found->second < 0) return std::vector<int>();
   std::vector<int> points = *points_between(a, found->second);

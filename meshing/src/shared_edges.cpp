@@ -3,24 +3,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include "edge_key.h"
+
 namespace luxel {
 
-namespace {
-
-std::uint64_t key(int a, int b) {
-  return static_cast<std::uint64_t>(std::min(a, b)) << 32 | static_cast<std::uint32_t>(std::max(a, b));
-}
-
-}  // namespace
-
 int SharedEdges::add(int a, int b) {
-  const auto [found, fresh] = index_.try_emplace(key(a, b), size());
+  const auto [found, fresh] = index_.try_emplace(edge_key(a, b), size());
   if (fresh) ends_.push_back({std::min(a, b), std::max(a, b)});
   return found->second;
 }
 
 int SharedEdges::find(int a, int b) const {
-  const auto found = index_.find(key(a, b));
+  const auto found = index_.find(edge_key(a, b));
   return found == index_.end() ? -1 : found->second;
 }
 
