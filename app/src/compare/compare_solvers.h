@@ -50,7 +50,7 @@ struct CompareOptions {
   std::vector<Method> methods;    ///< in the order to run
   double tolerance = 1e-10;       ///< relative residual asked of each
   double budget_factor = 10;      ///< a run is stopped after so many times the median of those before it
-  double smallest_budget = 0.5;   ///< [CPU s]
+  double smallest_budget = 5;     ///< [CPU s]; a factorisation cannot be stopped halfway
   std::function<bool()> stopped;  ///< asked now and then; true cancels with Cancelled
 };
 

@@ -57,7 +57,7 @@ std::string gnuplot_script(const std::vector<Run>& runs, TimeAxis axis, const st
                 : "set terminal svg size 1400,620 font 'Helvetica,13' background 'white'\n";
   script +=
       "set multiplot layout 1,2\nset logscale y\nset format y '10^{%T}'\nset grid back lc '#dddddd'\n"
-      "set key top right box opaque\nset logscale x\nset format x '10^{%T}'\n";
+      "set key below maxrows 2 samplen 2\nset logscale x\nset format x '10^{%T}'\n";
   script +=
       fmt::format("set xlabel '{} time [s]'\nset ylabel 'max |B - B*| / max |B*|   (dashed: its bound)'\n",
                   axis == TimeAxis::cpu ? "CPU" : "wall");
@@ -72,7 +72,10 @@ std::string gnuplot_script(const std::vector<Run>& runs, TimeAxis axis, const st
     return text + "\n";
   };
   script += curves("error", true);
-  script += "set xlabel 'iteration'\nset ylabel 'relative residual'\n" + curves("residual", false);
+  script +=
+      "unset logscale x\nset format x '%g'\nset xrange [0:*]\nset xlabel 'iteration'\nset ylabel 'relative "
+      "residual'\n" +
+      curves("residual", false);
   return script + "unset multiplot\n";
 }
 
