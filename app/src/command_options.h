@@ -19,6 +19,8 @@ void add_general(CLI::App& app, GeneralOptions& general);
 void add_scene(CLI::App& app, SceneOptions& scene);
 void add_operator(CLI::App& app, OperatorOptions& chosen);
 void add_solver(CLI::App& app, SolveOptions& options);
+void add_methods(CLI::App& app, std::vector<Method>& methods);
+void add_comparison(CLI::App& app, CompareCommand& compare);
 void add_outputs(CLI::App& app, std::vector<std::string>& outputs, const char* description);
 void add_full_precision(CLI::App& app, bool& full_precision);
 void add_factor_tables(CLI::App& app, FactorsCommand& factors);
