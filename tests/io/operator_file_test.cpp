@@ -40,7 +40,7 @@ class OperatorFile : public ::testing::Test {
     record.options.accuracy = 1e-5;
     record.options.seed = 7;
     record.form_factors.rays = 123456789012;
-    record.closure.before = {1e-4, 1e-5};
+    record.closure.before.max = 1e-4;
     record.closure.applied = true;
     record.closure.message = "a sentence";
     record.enclosures.closed = true;

@@ -65,7 +65,8 @@ class SceneBuilder {
   }
 
   /// A box turned about its centre, k x k patches a side, seen from outside or from inside.
-  void box(const Vec3& low, const Vec3& high, const Eigen::Matrix3d& turn, int k, bool inside, int sheets = 1) {
+  void box(const Vec3& low, const Vec3& high, const Eigen::Matrix3d& turn, int k, bool inside,
+           int sheets = 1) {
     const Vec3 centre = (low + high) / 2;
     auto corner = [&](int x, int y, int z) -> Vec3 {
       const Vec3 p(x ? high.x() : low.x(), y ? high.y() : low.y(), z ? high.z() : low.z());

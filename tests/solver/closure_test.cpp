@@ -259,6 +259,21 @@ TEST(RowSumErrorOf, CountsWhatEscapesAndWhatMeetsABack) {
 
   EXPECT_NEAR(error.max, 0.1, 1e-15);
   EXPECT_NEAR(error.rms, 0.05, 1e-15);  // sqrt(1 * 0.1^2 / 4)
+  EXPECT_EQ(error.sampling_rms, 0);
+  EXPECT_EQ(error.max_beyond_sampling, error.max);
+}
+
+TEST(RowSumErrorOf, TellsWhatTheRaysMayHaveCaused) {
+  Enclosures enclosures = all_closed(2);
+  enclosures.open_share = {0.5, 0.5};
+  enclosures.share_error = {0.02, 0};
+  const std::vector<double> sums{0.4, 0.49}, areas{1, 3};
+
+  const RowSumError error = row_sum_error(sums, areas, enclosures);
+
+  EXPECT_NEAR(error.max, 0.1, 1e-15);
+  EXPECT_NEAR(error.max_beyond_sampling, 0.04, 1e-15);  // 0.1 - 3 * 0.02; the other row is off by 0.01
+  EXPECT_NEAR(error.sampling_rms, 0.01, 1e-15);         // sqrt(1 * 0.02^2 / 4)
 }
 
 }  // namespace

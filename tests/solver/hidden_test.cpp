@@ -57,9 +57,9 @@ class HiddenShares : public ::testing::Test {
       auto onto = [z](double eye, double at) { return std::clamp(eye + (at - eye) / z, 0.0, 1.0); };
       const double u0 = onto(x, x0), u1 = onto(x, x1), v0 = onto(y, y0), v1 = onto(y, y1);
       const Polygon part = reversed(rectangle(u0, v0, u1, v1, 1));
-      shares.push_back(u1 > u0 && v1 > v0 ? point_form_factor({x, y, 0}, Vec3::UnitZ(),
-                                                               std::span(part.corners.data(), 4))
-                                          : 0);
+      shares.push_back(u1 > u0 && v1 > v0
+                           ? point_form_factor({x, y, 0}, Vec3::UnitZ(), std::span(part.corners.data(), 4))
+                           : 0);
     }
     return shares;
   }
@@ -95,8 +95,8 @@ TEST_F(HiddenShares, CountAnOverlapOnce) {
 }
 
 TEST_F(HiddenShares, OfASheetInPiecesAreThoseOfTheSheet) {
-  const auto pieces =
-      hidden({blocker(0.2, 0.2, 0.5, 0.6, 0.4), blocker(0.5, 0.2, 0.8, 0.6, 0.4), blocker(0.2, 0.6, 0.8, 0.7, 0.4)});
+  const auto pieces = hidden(
+      {blocker(0.2, 0.2, 0.5, 0.6, 0.4), blocker(0.5, 0.2, 0.8, 0.6, 0.4), blocker(0.2, 0.6, 0.8, 0.7, 0.4)});
 
   expect_equal(pieces, expected(0.2, 0.2, 0.8, 0.7, 0.4));
 }
@@ -108,8 +108,8 @@ TEST_F(HiddenShares, OfTheSameSheetThriceAreThoseOfOne) {
 }
 
 TEST_F(HiddenShares, OfManySheetsOneBehindAnotherAreThoseOfTheirUnion) {
-  // sheets at several heights, cut so that each hides the same rectangle of the ceiling from (0.5, 0.5, 0); the
-  // eye is beside it, so that no two edges lie in a plane with it
+  // sheets at several heights, cut so that each hides the same rectangle of the ceiling from (0.5, 0.5, 0);
+  // the eye is beside it, so that no two edges lie in a plane with it
   OuterPoints one;
   one.add(Vec3(0.5 + 1e-9, 0.5 + 3e-9, 0), 1);
   eyes_ = one;

@@ -27,7 +27,8 @@ std::vector<Partial> partial_pairs(const PatchMesh& mesh, const ClusterTree& tre
   for (int s = 0; s < mesh.size(); ++s) {
     for (int t = 0; t < s; ++t) {
       const WorkPatch &a = tree.patches[s], &b = tree.patches[t];
-      const ShaftEnd from = shaft_end(a.outline, a.centroid, a.edge), to = shaft_end(b.outline, b.centroid, b.edge);
+      const ShaftEnd from = shaft_end(a.outline, a.centroid, a.edge),
+                     to = shaft_end(b.outline, b.centroid, b.edge);
       const ShaftCandidates found = candidates_in_shaft(from, to, set, all);
       if (found.hidden || found.list.empty() || ++met % stride != 0) continue;
       const double exchange =

@@ -59,10 +59,12 @@ void visit_numbers(OperatorRecord& record, const Visit& visit) {
   visit(report.occluders);
   visit(report.estimated_error);
   ClosureReport& closure = record.closure;
-  for (auto* figure : {&closure.before.max, &closure.before.rms, &closure.after.max, &closure.after.rms,
-                       &closure.largest_correction}) {
-    visit(*figure);
+  for (RowSumError* error : {&closure.before, &closure.after}) {
+    for (auto* figure : {&error->max, &error->rms, &error->sampling_rms, &error->max_beyond_sampling}) {
+      visit(*figure);
+    }
   }
+  visit(closure.largest_correction);
   visit(closure.applied);
   visit(closure.iterations);
   visit(record.enclosures.closed);

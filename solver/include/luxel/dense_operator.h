@@ -15,6 +15,10 @@ namespace luxel {
 struct RowSumError {
   double max = 0;  ///< largest |s_i + open_i + back_i - 1|
   double rms = 0;  ///< area-weighted root mean square
+  /// What of rms the rays that measured open_i and back_i may have caused: area-weighted RMS of their
+  /// standard errors; 0 in closed scenes.
+  double sampling_rms = 0;
+  double max_beyond_sampling = 0;  ///< largest |..| beyond three standard errors of its row
 };
 
 /// What an operator's rows lack, with the shares that the enclosures' rays measured (their own error:

@@ -17,7 +17,7 @@ struct Enclosures {
   std::vector<char> enclosure_closed;  ///< `count` flags
   std::vector<double> open_share;      ///< N: cosine-weighted share of directions that escape, in [0, 1]
   std::vector<double> back_share;      ///< N: share that meets a back
-  /// N: standard error of open_share + back_share; 1 / rays where no ray did either though the enclosure is
+  /// N: standard error of open_share + back_share; 1 / rays where all rays agree though the enclosure is
   /// open; 0 in closed enclosures
   std::vector<double> share_error;
   std::int64_t rays = 0;  ///< cast from patches; 0 where the surfaces alone prove every enclosure closed
@@ -33,7 +33,9 @@ struct Enclosures {
 ///
 /// @param rays_per_patch  cosine-distributed quasi-random directions from quasi-random points of each patch,
 /// >= 16
+/// @param share_accuracy  where the standard error of a patch's shares exceeds this, up to 64 times the rays
+/// are cast for it; 0: never
 Enclosures find_enclosures(const PatchMesh& mesh, const RayScene& occluders, int rays_per_patch = 256,
-                           const Progress& progress = {});
+                           const Progress& progress = {}, double share_accuracy = 0);
 
 }  // namespace luxel

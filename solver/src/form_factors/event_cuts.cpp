@@ -9,7 +9,7 @@ namespace luxel {
 namespace {
 
 // Cuts that take less than this share of the patch's length change nothing that a quadrature would see.
-constexpr double thinnest_cut = 1e-3;
+constexpr double thinnest_cut = 2e-4;
 
 // Two planes are the same when the sine of their angle is below this: an occluder's edge that lies in the
 // plane of the outer patch makes no event on it.
@@ -31,12 +31,19 @@ class Cutter {
     if (cells_.size() >= max_cells_) return;
     const Vec3 to_p = event.p - event.corner, to_q = event.q - event.corner;
     Vec3 across = to_p.cross(to_q);
+    // most planes pass by the cell: seen before any root is drawn
+    Span span;
+    for (int k = 0; k < whole_.count; ++k) {
+      const double height = across.dot(whole_[k] - event.corner);
+      span.low = std::min(span.low, height);
+      span.high = std::max(span.high, height);
+    }
+    if (span.low >= 0 || span.high <= 0) return;
     const double length = across.norm();
     if (length < 1e-14) return;
     across /= length;
+    span = {span.low / length, span.high / length};
     const Plane plane{across, across.dot(event.corner)};
-    const Span span = span_along(whole_, plane);
-    if (span.low >= 0 || span.high <= 0) return;
     const double slant = across.cross(normal_).norm();
     if (slant < same_plane) return;
     const double tolerance = thinnest_cut * size_ * slant;
@@ -45,8 +52,9 @@ class Cutter {
     next_.clear();
     for (const Polygon& cell : cells_) {
       const Halves parts = halves(cell, plane, tolerance);
-      if (parts.front.count == 0 || parts.behind.count == 0 || !happens(cell, plane, event, to_p, to_q, across) ||
-          parts.front.count >= Polygon::capacity - 2 || parts.behind.count >= Polygon::capacity - 2) {
+      if (parts.front.count == 0 || parts.behind.count == 0 ||
+          !happens(cell, plane, event, to_p, to_q, across) || parts.front.count >= Polygon::capacity - 2 ||
+          parts.behind.count >= Polygon::capacity - 2) {
         next_.push_back(cell);
       } else {
         next_.push_back(parts.front);
@@ -62,17 +70,17 @@ class Cutter {
   // Whether somewhere on the cut through the cell the corner is seen between the ends of the edge.
   static bool happens(const Polygon& cell, const Plane& plane, const Event& event, const Vec3& to_p,
                       const Vec3& to_q, const Vec3& across) {
-    double low_p = -1, low_q = -1;  // the larger of the two ends' shares of p and of q
+    double share_p = -1, share_q = -1;  // of the edge's ends, the larger at the cut's two ends
     for (int k = 0; k < cell.count; ++k) {
       const double here = plane.distance(cell[k]), there = plane.distance(cell.next(k));
       if (!((here >= 0 && there < 0) || (here < 0 && there >= 0))) continue;
       Vec3 sight = cell[k] + (here / (here - there)) * (cell.next(k) - cell[k]) - event.corner;
       if (!event.beyond) sight = -sight;
       const double scale = sight.norm() * to_p.norm() + 1e-300;
-      low_p = std::max(low_p, across.dot(sight.cross(to_q)) / scale);
-      low_q = std::max(low_q, across.dot(to_p.cross(sight)) / scale);
+      share_p = std::max(share_p, across.dot(sight.cross(to_q)) / scale);
+      share_q = std::max(share_q, across.dot(to_p.cross(sight)) / scale);
     }
-    return low_p > same_plane && low_q > same_plane;
+    return share_p > same_plane && share_q > same_plane;
   }
 
   Polygon whole_;

@@ -34,7 +34,9 @@ struct Shadows {
 
   /// How two edges of different cones lie for every eye: 0 apart, +1 on one line with the same side inside,
   /// -1 on one line with opposite sides inside.
-  int tie(int e, int o) const { return ties[static_cast<std::size_t>(e) * edges.size() + static_cast<std::size_t>(o)]; }
+  int tie(int e, int o) const {
+    return ties[static_cast<std::size_t>(e) * edges.size() + static_cast<std::size_t>(o)];
+  }
   int count() const { return static_cast<int>(begin.size()) - 1; }
   void clear();
 };

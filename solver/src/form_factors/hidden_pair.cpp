@@ -25,7 +25,8 @@ constexpr std::size_t most_cells = 400;
 // cheaper to look first.
 constexpr double cut_first = 2e-3;
 
-// Where the integral says that this share of a cell's exchange is hidden, it is looked at whether all of it is.
+// Where the integral says that this share of a cell's exchange is hidden, it is looked at whether all of it
+// is.
 constexpr double nearly_all = 0.9;
 
 double side(const Span& span) {
@@ -53,7 +54,8 @@ HiddenPair::Ends HiddenPair::ends(int s, int t, const std::vector<Candidate>& ca
   return ends;
 }
 
-// A patch's own polygon does not hide it; noise might say otherwise. Neither does the body that it is part of.
+// A patch's own polygon does not hide it; noise might say otherwise. Neither does the body that it is part
+// of.
 bool HiddenPair::own(const Occluder& occluder, const Ends& ends) const {
   const int outer = mesh_.polygons[ends.outer->patch], inner = mesh_.polygons[ends.inner->patch];
   for (int f = occluder.begin; f < occluder.end; ++f) {
@@ -63,7 +65,8 @@ bool HiddenPair::own(const Occluder& occluder, const Ends& ends) const {
   return false;
 }
 
-std::vector<Polygon> HiddenPair::cells_by_side(const Ends& ends, const std::vector<Candidate>& candidates) const {
+std::vector<Polygon> HiddenPair::cells_by_side(const Ends& ends,
+                                               const std::vector<Candidate>& candidates) const {
   std::vector<Polygon> cells{ends.cell};
   const double length = ends.outer->edge;
   for (const Candidate& candidate : candidates) {
@@ -213,9 +216,9 @@ HiddenPart HiddenPair::operator()(int s, int t, const std::vector<Candidate>& ca
     if (cast == Cast::everything) {
       ++dark;
       if (cells.size() > 1) {
-        part.value += exchange_area(std::span(cell.corners.data(), static_cast<std::size_t>(cell.count)),
-                                    std::span(pair.target.corners.data(),
-                                              static_cast<std::size_t>(pair.target.count)));
+        part.value +=
+            exchange_area(std::span(cell.corners.data(), static_cast<std::size_t>(cell.count)),
+                          std::span(pair.target.corners.data(), static_cast<std::size_t>(pair.target.count)));
       }
       continue;
     }

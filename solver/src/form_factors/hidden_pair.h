@@ -19,8 +19,8 @@ struct HiddenPart {
   double error = 0;  ///< estimate
 };
 
-/// Visibility of single pairs by clipping: exact in the inner patch, by quadrature over the outer one, which is
-/// cut where the view changes its shape. One per thread: it keeps its working memory.
+/// Visibility of single pairs by clipping: exact in the inner patch, by quadrature over the outer one, which
+/// is cut where the view changes its shape. One per thread: it keeps its working memory.
 class HiddenPair {
  public:
   HiddenPair(const PatchMesh& mesh, const ClusterTree& tree, const OccluderSet& set);

@@ -18,10 +18,10 @@ namespace {
 // rounding (1e-16), far below any error asked for.
 constexpr double nudge = 1e-9;
 
-// Within a smooth cell the hidden area is a polynomial of degree two in the point as long as the cell's radius r
-// is small against its distance D from the nearest edge, with corrections by powers of r / D: a one-point rule
-// errs by about this share, one of order n > 1 by this times (2 D / r)^(2 - 2 n). Measured on rooms and rotated
-// boxes, see docs/decisions/0007-visibility.md.
+// Within a smooth cell the hidden area is a polynomial of degree two in the point as long as the cell's
+// radius r is small against its distance D from the nearest edge, with corrections by powers of r / D: a
+// one-point rule errs by about this share, one of order n > 1 by this times (2 D / r)^(2 - 2 n). Measured on
+// rooms and rotated boxes, see docs/decisions/0007-visibility.md.
 constexpr double gauss_constant = 0.1;
 
 // Cells are halved at most so often on their way to an edge that touches them; what is left then is
@@ -99,19 +99,33 @@ void add_triangle(const Vec3& a, const Vec3& b, const Vec3& c, std::span<const N
   }
 }
 
-// The bilinear map from the unit square, and its area element.
-void add_quad_point(const std::array<Vec3, 4>& q, double s, double t, double weight, OuterPoints& points) {
-  const Vec3 along_s = (1 - t) * (q[1] - q[0]) + t * (q[2] - q[3]);
-  const Vec3 along_t = (1 - s) * (q[3] - q[0]) + s * (q[2] - q[1]);
-  const Vec3 at = (1 - s) * (1 - t) * q[0] + s * (1 - t) * q[1] + s * t * q[2] + (1 - s) * t * q[3];
-  points.add(at + nudge * (0.61 * along_s + 0.37 * along_t), weight * along_s.cross(along_t).norm());
-}
+// The bilinear map from the unit square to a flat quad, and its area element, which is linear in both.
+class QuadMap {
+ public:
+  explicit QuadMap(const std::array<Vec3, 4>& q)
+      : origin_(q[0]), s_(q[1] - q[0]), t_(q[3] - q[0]), both_(q[0] - q[1] + q[2] - q[3]) {
+    const Vec3 normal = (q[2] - q[0]).cross(q[3] - q[1]).normalized();
+    element_ = normal.dot(s_.cross(t_));
+    element_s_ = normal.dot(s_.cross(both_));
+    element_t_ = normal.dot(both_.cross(t_));
+  }
+  void add(double s, double t, double weight, OuterPoints& points) const {
+    const double u = s + 0.61 * nudge, v = t + 0.37 * nudge;
+    points.add(origin_ + u * s_ + v * t_ + u * v * both_,
+               weight * std::max(element_ + s * element_s_ + t * element_t_, 0.0));
+  }
+
+ private:
+  Vec3 origin_, s_, t_, both_;
+  double element_, element_s_, element_t_;
+};
 
 void add_quad(const std::array<Vec3, 4>& q, int order, OuterPoints& points) {
   const Gauss& rule = gauss[static_cast<std::size_t>(order - 1)];
+  const QuadMap map(q);
   for (int i = 0; i < order; ++i) {
     for (int j = 0; j < order; ++j) {
-      add_quad_point(q, rule.at[i], rule.at[j], rule.weight[i] * rule.weight[j], points);
+      map.add(rule.at[i], rule.at[j], rule.weight[i] * rule.weight[j], points);
     }
   }
 }
@@ -170,7 +184,8 @@ HalvedCells halve(const Polygon& cell, const Vec3& middle) {
 
 void add_points(const Polygon& cell, int order, OuterPoints& points) {
   fan(
-      cell, [&](const std::array<Vec3, 3>& t) { add_triangle(t[0], t[1], t[2], triangle_rule(order), points); },
+      cell,
+      [&](const std::array<Vec3, 3>& t) { add_triangle(t[0], t[1], t[2], triangle_rule(order), points); },
       [&](const std::array<Vec3, 4>& q) { add_quad(q, order, points); });
 }
 
@@ -196,7 +211,8 @@ double HiddenQuadrature::distance_to_edges(const Vec3& point) const {
   return std::sqrt(nearest);
 }
 
-void HiddenQuadrature::place(const Polygon& cell, double unhidden, double whole, double tolerance, int depth) {
+void HiddenQuadrature::place(const Polygon& cell, double unhidden, double whole, double tolerance,
+                             int depth) {
   const Vec3 middle = centroid(cell);
   const double size = area_vector(cell).norm();
   if (!(size > 0)) return;
@@ -282,9 +298,8 @@ HiddenIntegral HiddenQuadrature::adaptive(std::span<const Polygon> cells, double
     for (const Part& part : parts) {
       const Polygon& c = part.cell;
       if (c.count == 4) {
-        for (const Node& node : quad_rules) {
-          add_quad_point({c[0], c[1], c[2], c[3]}, node.u, node.v, node.weight, points_);
-        }
+        const QuadMap map({c[0], c[1], c[2], c[3]});
+        for (const Node& node : quad_rules) map.add(node.u, node.v, node.weight, points_);
       } else {
         add_triangle(c[0], c[1], c[2], triangle_2, points_);
         add_triangle(c[0], c[1], c[2], triangle_middles, points_);

@@ -74,8 +74,8 @@ bool anything_inside(const Occluder& body, std::span<const OccluderFace> faces, 
         std::any_of(faces.begin(), faces.end(), [&](const auto& face) { return face.polygon == polygon; });
     // a second sheet back to back with a face of the body looks into it
     const bool outward = own && std::any_of(faces.begin(), faces.end(), [&](const auto& face) {
-      return face.polygon == polygon && face.plane.normal.dot(patch.plane.normal) > 0.5;
-    });
+                           return face.polygon == polygon && face.plane.normal.dot(patch.plane.normal) > 0.5;
+                         });
     if (!outward && reaches_into(patch, faces)) return true;
   }
   return false;

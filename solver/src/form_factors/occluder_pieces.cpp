@@ -111,13 +111,13 @@ class Joiner {
   }
 
   // `first` without its edge a-b, round by way of `second`.
-  static std::vector<int> merged(const std::vector<int>& first, const std::vector<int>& second, int a, int b) {
+  static std::vector<int> merged(const std::vector<int>& first, const std::vector<int>& second, int a,
+                                 int b) {
     std::vector<int> joined;
     const auto from = static_cast<std::size_t>(std::find(first.begin(), first.end(), b) - first.begin());
     for (std::size_t k = 0; k < first.size(); ++k) joined.push_back(first[(from + k) % first.size()]);
     const auto into = static_cast<std::size_t>(std::find(second.begin(), second.end(), a) - second.begin());
-    for (std::size_t k = 1; k + 1 < second.size(); ++k)
-      joined.push_back(second[(into + k) % second.size()]);
+    for (std::size_t k = 1; k + 1 < second.size(); ++k) joined.push_back(second[(into + k) % second.size()]);
     return joined;
   }
 

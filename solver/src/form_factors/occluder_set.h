@@ -62,9 +62,9 @@ OccluderSet occluder_set(const PatchMesh& mesh, const ClusterTree& tree, bool ke
 /// A face of the outline with its sides and its sphere.
 OccluderFace occluder_face(const Polygon& outline, const Plane& plane, int polygon);
 
-/// Convex pieces, counter-clockwise, whose union is the triangles' (one flat polygon), as few as easily found:
-/// the whole where it is convex, else triangles joined over common edges as long as they stay convex. Corners
-/// in the middle of straight edges are left out.
+/// Convex pieces, counter-clockwise, whose union is the triangles' (one flat polygon), as few as easily
+/// found: the whole where it is convex, else triangles joined over common edges as long as they stay convex.
+/// Corners in the middle of straight edges are left out.
 std::vector<Polygon> convex_pieces(std::span<const Vec3> vertices,
                                    std::span<const std::array<int, 3>> triangles, const Vec3& normal);
 

@@ -17,7 +17,7 @@ namespace {
 constexpr double surface_offset = 4e-7;
 
 // Rays of a pair: the first lot, and the most that any pair gets.
-constexpr int first_rays = 4;
+constexpr int first_rays = 6;
 constexpr int most_rays = 1 << 16;
 
 constexpr int packet = 16;
@@ -88,7 +88,7 @@ bool straddles(const WorkPatch& patch, const Plane& plane) {
 struct Trial {
   std::size_t pair = 0;
   std::array<double, 4> shift{};
-  int clipped = -1;  // index of the pair's parts before each other's horizon, or -1: all of both
+  int clipped = -1;       // index of the pair's parts before each other's horizon, or -1: all of both
   int traced = 0;         // points of the sequence used
   int wanted = 0;         // to be used by the end of this round
   double weight = 0;      // of all rays
@@ -199,14 +199,13 @@ RayVisibility::RayVisibility(const ClusterTree& tree, const OccluderSet& set, st
     }
   }
   RTCGeometry geometry = rtcNewGeometry(impl_->device, RTC_GEOMETRY_TYPE_QUAD);
-  auto* x = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                        3 * sizeof(float), corners.size()));
+  auto* x = static_cast<float*>(rtcSetNewGeometryBuffer(
+      geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), corners.size()));
   for (std::size_t k = 0; k < corners.size(); ++k) {
     for (int c = 0; c < 3; ++c) x[3 * k + static_cast<std::size_t>(c)] = static_cast<float>(corners[k][c]);
   }
-  auto* index = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0,
-                                                               RTC_FORMAT_UINT4, 4 * sizeof(unsigned),
-                                                               quads.size()));
+  auto* index = static_cast<unsigned*>(rtcSetNewGeometryBuffer(
+      geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT4, 4 * sizeof(unsigned), quads.size()));
   for (std::size_t k = 0; k < quads.size(); ++k) std::copy(quads[k].begin(), quads[k].end(), index + 4 * k);
   rtcCommitGeometry(geometry);
   rtcAttachGeometry(impl_->scene, geometry);
@@ -230,7 +229,8 @@ std::vector<RayShare> RayVisibility::visible(std::span<const RayPair> pairs) con
     std::uint64_t state = mixed(impl_->seed ^ mixed(i << 32 | j));
     const WorkPatch &a = impl_->tree.patches[pairs[k].s], &b = impl_->tree.patches[pairs[k].t];
     if (straddles(a, b.plane) || straddles(b, a.plane)) {
-      const Polygon from = clip(a.outline, b.plane, side_tolerance), to = clip(b.outline, a.plane, side_tolerance);
+      const Polygon from = clip(a.outline, b.plane, side_tolerance),
+                    to = clip(b.outline, a.plane, side_tolerance);
       if (from.count >= 3 && to.count >= 3) {
         trials[k].clipped = static_cast<int>(clipped.size());
         clipped.push_back({from, to});
@@ -243,8 +243,10 @@ std::vector<RayShare> RayVisibility::visible(std::span<const RayPair> pairs) con
     for (std::size_t k : open) {
       Trial& trial = trials[k];
       const WorkPatch &a = impl_->tree.patches[pairs[k].s], &b = impl_->tree.patches[pairs[k].t];
-      const Polygon& from_part = trial.clipped < 0 ? a.outline : clipped[static_cast<std::size_t>(trial.clipped)][0];
-      const Polygon& to_part = trial.clipped < 0 ? b.outline : clipped[static_cast<std::size_t>(trial.clipped)][1];
+      const Polygon& from_part =
+          trial.clipped < 0 ? a.outline : clipped[static_cast<std::size_t>(trial.clipped)][0];
+      const Polygon& to_part =
+          trial.clipped < 0 ? b.outline : clipped[static_cast<std::size_t>(trial.clipped)][1];
       for (; trial.traced < trial.wanted; ++trial.traced) {
         std::array<double, 4> u;
         for (std::size_t c = 0; c < 4; ++c) {

@@ -35,7 +35,7 @@ class Assembly {
  public:
   Assembly(const ClusterTree& tree, double accuracy, ExchangeMatrix& matrix)
       : tree_(tree),
-        choice_(rule_choice(accuracy)),
+        choice_(rule_choice(accuracy, static_cast<int>(tree.patches.size()))),
         writer_(tree, matrix),
         planes_(patch_planes(tree.patches)) {
     for (int level = 1; level <= point_levels; ++level) points_[level] = patch_points(tree.patches, level);

@@ -3,8 +3,8 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <cmath>
 #include <array>
+#include <cmath>
 #include <mutex>
 #include <optional>
 #include <vector>
@@ -22,14 +22,14 @@ namespace {
 
 // Errors of single pairs have either sign; rows of n pairs, each with A sqrt(G_ij min(A_i, A_j)) times this,
 // err by A times this in the root mean square.
-constexpr double pair_share = 0.5;
+constexpr double pair_share = 0.3;
 
-// Rays err independently, clipping does not: their share is larger, such that the largest of 10,000 rows (four
-// standard deviations) stays below 2 A.
-constexpr double ray_share = 0.6;
+// Rays err independently, clipping does not: their share is larger, such that the largest of 10,000 rows
+// (four standard deviations) stays below 2 A.
+constexpr double ray_share = 0.75;
 
-// Rays decide on pairs with more occluders in between than this, where their tolerance is at least `coarse` of
-// the pair: clipping costs about 3 us and grows with the square of the occluders, a ray costs 60 ns.
+// Rays decide on pairs with more occluders in between than this, where their tolerance is at least `coarse`
+// of the pair: clipping costs about 3 us and grows with the square of the occluders, a ray costs 60 ns.
 constexpr std::size_t few_occluders = 6;
 constexpr double coarse = 0.01;
 
@@ -124,7 +124,8 @@ class VisibilityPass {
   }
 
   // Descends from a pair of clusters, the same one twice included, to blocks of at most limit_ entries.
-  void split(int a, int b, const std::vector<Candidate>& inherited, std::vector<Block>& blocks, Tally& tally) {
+  void split(int a, int b, const std::vector<Candidate>& inherited, std::vector<Block>& blocks,
+             Tally& tally) {
     const Cluster &ca = tree_.clusters[a], &cb = tree_.clusters[b];
     if (a == b) {
       if (ca.leaf() || ca.planar) return;
@@ -218,7 +219,8 @@ class VisibilityPass {
   }
 
   // A pair of a block in which rays decide, if they reach the accuracy.
-  void sample_or_clip(int s, int t, const std::vector<Candidate>& candidates, HiddenPair& clip, BlockWork& work) {
+  void sample_or_clip(int s, int t, const std::vector<Candidate>& candidates, HiddenPair& clip,
+                      BlockWork& work) {
     const double exchange = unhidden(s, t);
     if (!(exchange > 0)) return;
     const double allowed = tolerance(s, t, exchange);

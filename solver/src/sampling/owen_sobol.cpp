@@ -2,6 +2,8 @@
 
 #include <bit>
 
+#include "sampling/sobol_words.h"
+
 namespace luxel {
 
 namespace {
@@ -38,25 +40,6 @@ constexpr DirectionNumbers direction_numbers() {
 
 constexpr DirectionNumbers directions = direction_numbers();
 
-constexpr std::uint32_t reversed(std::uint32_t x) {
-  x = (x >> 1 & 0x55555555u) | (x & 0x55555555u) << 1;
-  x = (x >> 2 & 0x33333333u) | (x & 0x33333333u) << 2;
-  x = (x >> 4 & 0x0f0f0f0fu) | (x & 0x0f0f0f0fu) << 4;
-  x = (x >> 8 & 0x00ff00ffu) | (x & 0x00ff00ffu) << 8;
-  return x >> 16 | x << 16;
-}
-
-/// Flips each bit by a hash of the bits above it. Source: Laine and Karras 2011; constants of Vegdahl 2021.
-constexpr std::uint32_t scrambled(std::uint32_t x, std::uint32_t seed) {
-  x = reversed(x);
-  x ^= x * 0x3d20adeau;
-  x += seed;
-  x *= seed >> 16 | 1;
-  x ^= x * 0x05526c56u;
-  x ^= x * 0x53a22864u;
-  return reversed(x);
-}
-
 /// splitmix64 (Steele, Lea, Flood 2014).
 constexpr std::uint64_t mixed(std::uint64_t x) {
   x += 0x9e3779b97f4a7c15u;
@@ -66,6 +49,20 @@ constexpr std::uint64_t mixed(std::uint64_t x) {
 }
 
 }  // namespace
+
+std::vector<std::uint32_t> reversed_sobol_words(int count) {
+  std::vector<std::uint32_t> words;
+  words.reserve(4 * static_cast<std::size_t>(count));
+  std::array<std::uint32_t, 4> x{};
+  for (std::uint32_t index = 0; index < static_cast<std::uint32_t>(count); ++index) {
+    // from index - 1 to index the lowest bits flip, up to and with the lowest zero
+    for (std::uint32_t flips = index == 0 ? 0 : index ^ (index - 1); flips != 0; flips &= flips - 1) {
+      for (int d = 0; d < 4; ++d) x[d] ^= directions[d][std::countr_zero(flips)];
+    }
+    for (int d = 0; d < 4; ++d) words.push_back(bits_reversed(x[d]));
+  }
+  return words;
+}
 
 OwenSobol4::OwenSobol4(std::uint64_t seed) {
   for (int d = 0; d < 4; ++d) seeds_[d] = static_cast<std::uint32_t>(mixed(seed + d));
@@ -78,7 +75,8 @@ std::array<double, 4> OwenSobol4::operator()(std::uint32_t index) const {
     for (int d = 0; d < 4; ++d) x[d] ^= directions[d][k];
   }
   std::array<double, 4> point;
-  for (int d = 0; d < 4; ++d) point[d] = scrambled(x[d], seeds_[d]) * 0x1p-32;
+  for (int d = 0; d < 4; ++d)
+    point[d] = bits_reversed(LaineKarras{}(bits_reversed(x[d]), seeds_[d])) * 0x1p-32;
   return point;
 }
 

@@ -84,14 +84,19 @@ std::string unclosed_message(int patch) {
 RowSumError row_sum_error(std::span<const double> row_sums, std::span<const double> areas,
                           const Enclosures& enclosures) {
   RowSumError error;
-  double squares = 0, total = 0;
+  double squares = 0, noise = 0, total = 0;
   for (std::size_t i = 0; i < row_sums.size(); ++i) {
     const double off = std::abs(row_sums[i] + enclosures.open_share[i] + enclosures.back_share[i] - 1);
     error.max = std::max(error.max, off);
+    error.max_beyond_sampling = std::max(error.max_beyond_sampling, off - 3 * enclosures.share_error[i]);
     squares += areas[i] * off * off;
+    noise += areas[i] * enclosures.share_error[i] * enclosures.share_error[i];
     total += areas[i];
   }
-  if (total > 0) error.rms = std::sqrt(squares / total);
+  if (total > 0) {
+    error.rms = std::sqrt(squares / total);
+    error.sampling_rms = std::sqrt(noise / total);
+  }
   return error;
 }
 

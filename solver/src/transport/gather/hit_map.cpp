@@ -1,0 +1,115 @@
+#include "transport/gather/hit_map.h"
+
+#include <tbb/parallel_for.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <stdexcept>
+
+#include "transport/gather/plane_picture.h"
+
+namespace luxel {
+
+namespace {
+
+// Texels a patch, by the number of patches: 16 move boundaries by less than any error seen at 5,000 patches
+// (0.169 % against 0.167 % with 64); at a million the picture's place in the cache counts more.
+constexpr double texels_of_few = 16, texels_of_many = 4;
+constexpr int many_patches = 200'000;
+
+/// Indices 0 .. keys.size(), in lists by their keys, each list in order.
+struct Lists {
+  std::vector<int> starts, items;
+
+  Lists(const std::vector<int>& keys, int key_count) : starts(key_count + 1, 0), items(keys.size()) {
+    for (int key : keys) ++starts[key + 1];
+    for (int k = 0; k < key_count; ++k) starts[k + 1] += starts[k];
+    std::vector<int> next(starts.begin(), starts.end() - 1);
+    for (std::size_t i = 0; i < keys.size(); ++i) items[next[keys[i]]++] = static_cast<int>(i);
+  }
+  std::span<const int> operator[](int key) const {
+    return {items.data() + starts[key], items.data() + starts[key + 1]};
+  }
+};
+
+Vec3 front_of(const Occluders& occluders, std::span<const int> triangles) {
+  Vec3 normal = Vec3::Zero();
+  for (int t : triangles) {
+    const auto& [a, b, c] = occluders.triangles[t];
+    const Vec3& x = occluders.vertices[a];
+    normal += (occluders.vertices[b] - x).cross(occluders.vertices[c] - x);
+  }
+  return normal;
+}
+
+}  // namespace
+
+HitMap::HitMap(const PatchMesh& mesh) : triangles_(mesh.occluders.triangles.size()) {
+  const Occluders& occluders = mesh.occluders;
+  const int polygons = occluders.polygon_count;
+  const Lists triangles_of(occluders.polygons, polygons);
+  std::vector<int> side_of(mesh.size());
+  std::vector<Vec3> fronts(polygons);
+  for (int p = 0; p < polygons; ++p) fronts[p] = front_of(occluders, triangles_of[p]);
+  for (int i = 0; i < mesh.size(); ++i) {
+    side_of[i] = 2 * mesh.polygons[i] + (mesh.normals[i].dot(fronts[mesh.polygons[i]]) > 0 ? 0 : 1);
+  }
+  const Lists patches_of(side_of, 2 * polygons);
+  const double texels_a_patch = mesh.size() < many_patches ? texels_of_few : texels_of_many;
+
+  std::vector<PlanePicture> pictures(polygons);
+  std::vector<std::array<std::int32_t, 2>> first(polygons, {no_side, no_side});
+  std::size_t total = 0;
+  for (int p = 0; p < polygons; ++p) {
+    const std::size_t count = std::max(patches_of[2 * p].size(), patches_of[2 * p + 1].size());
+    if (count > 1) {
+      pictures[p] =
+          plane_picture(occluders, triangles_of[p], fronts[p], static_cast<double>(count) * texels_a_patch);
+    }
+    for (int side = 0; side < 2; ++side) {
+      if (patches_of[2 * p + side].empty()) continue;
+      first[p][side] = static_cast<std::int32_t>(total);
+      total += static_cast<std::size_t>(pictures[p].width) * pictures[p].height;
+    }
+  }
+  if (total > std::numeric_limits<std::int32_t>::max()) {
+    throw std::invalid_argument("HitMap: more patches than texel numbers of 31 bits");
+  }
+  texels_.assign(total, ask);
+  tbb::parallel_for(0, polygons, [&](int p) {
+    const PlanePicture& picture = pictures[p];
+    for (int side = 0; side < 2; ++side) {
+      const auto patches = patches_of[2 * p + side];
+      if (patches.empty()) continue;
+      const std::span<std::int32_t> texels(texels_.data() + first[p][side],
+                                           static_cast<std::size_t>(picture.width) * picture.height);
+      if (patches.size() == 1) {
+        std::fill(texels.begin(), texels.end(), patches[0]);
+      } else {
+        draw_patches(mesh, patches, picture, texels);
+      }
+    }
+    for (int t : triangles_of[p]) {
+      Triangle& triangle = triangles_[t];
+      triangle.width = picture.width;
+      triangle.height = picture.height;
+      triangle.first[0] = first[p][0];
+      triangle.first[1] = first[p][1];
+      const auto& [a, b, c] = occluders.triangles[t];
+      const Eigen::Vector2d x = picture.at(occluders.vertices[a]);
+      const Eigen::Vector2d u = picture.at(occluders.vertices[b]) - x;
+      const Eigen::Vector2d v = picture.at(occluders.vertices[c]) - x;
+      triangle.x0 = static_cast<float>(x[0]);
+      triangle.y0 = static_cast<float>(x[1]);
+      triangle.xu = static_cast<float>(u[0]);
+      triangle.yu = static_cast<float>(u[1]);
+      triangle.xv = static_cast<float>(v[0]);
+      triangle.yv = static_cast<float>(v[1]);
+    }
+  });
+}
+
+}  // namespace luxel

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "luxel/patch_mesh.h"
+
+namespace luxel {
+
+/// From what a ray met (a triangle of the occluders, its side, barycentric coordinates) to the patch there,
+/// by a picture of each polygon's side whose texels hold patch numbers: vector code can read it. Boundaries
+/// between patches are moved by half a texel at most; where that could lose a whole patch the texel says
+/// `ask`, and PatchLocator knows. Memory: 16 to 64 bytes a patch, 48 a triangle.
+class HitMap {
+ public:
+  static constexpr std::int32_t ask = -1;      ///< a texel that does not know
+  static constexpr std::int32_t no_side = -1;  ///< `first` where no patch lies on that side
+
+  /// Texel coordinates (x, y) = x0 + u xu + v xv, clamped to the picture's size; texel first[side] + y width
+  /// + x.
+  struct Triangle {
+    float x0, xu, xv, y0, yu, yv;
+    std::int32_t width, height;
+    std::int32_t first[2];  ///< front, back
+    std::int32_t unused[2];
+  };
+  static constexpr int words = 12;
+  static_assert(sizeof(Triangle) == words * sizeof(float));
+
+  explicit HitMap(const PatchMesh& mesh);
+
+  const std::vector<Triangle>& triangles() const { return triangles_; }
+  const std::vector<std::int32_t>& texels() const { return texels_; }
+  std::size_t bytes() const {
+    return triangles_.size() * sizeof(Triangle) + texels_.size() * sizeof(std::int32_t);
+  }
+
+ private:
+  std::vector<Triangle> triangles_;
+  std::vector<std::int32_t> texels_;
+};
+
+}  // namespace luxel

@@ -1,0 +1,53 @@
+#include "transport/gather/patch_frame.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <limits>
+
+namespace luxel {
+
+namespace {
+
+// In the ray scene's coordinates, whose diagonal lies in [1, 2): above the rounding of a float coordinate
+// (6e-8) and of a plane through such corners, below gaps of 1e-6.
+constexpr double surface_offset = 4e-7;
+
+// Above what float moves an origin along its patch.
+constexpr double margin = 1e-6;
+
+}  // namespace
+
+double outline_margin(const RayScene& occluders) {
+  return margin / occluders.scale();
+}
+
+PatchFrame patch_frame(const PatchMesh& mesh, int patch, const RayScene& occluders) {
+  const auto& corners = mesh.corners[patch];
+  const int count = mesh.corner_count(patch);
+  const auto local = [&](const Vec3& x) -> Vec3 { return (x - occluders.centre()) * occluders.scale(); };
+  const Vec3 centroid = local(mesh.centroids[patch]);
+  const Vec3 corner = local(mesh.vertices[corners[0]]);
+  PatchFrame frame;
+  frame.normal = mesh.normals[patch];
+  frame.first = local(mesh.vertices[corners[1]]) - corner;
+  frame.second = local(mesh.vertices[corners[2]]) - corner;
+  frame.third = count == 4 ? Vec3(local(mesh.vertices[corners[3]]) - corner) : Vec3::Zero();
+  const double in_first = frame.first.cross(frame.second).norm();
+  const double in_other = frame.second.cross(frame.third).norm();
+  frame.share = in_first / (in_first + in_other);
+
+  double clearance = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < count; ++k) {
+    const Vec3 a = local(mesh.vertices[corners[k]]);
+    const Vec3 edge = local(mesh.vertices[corners[(k + 1) % count]]) - a;
+    clearance = std::min(clearance, edge.cross(centroid - a).norm() / edge.norm());
+  }
+  const double shrink = clearance > margin ? margin / clearance : 1;
+  frame.corner = corner + shrink * (centroid - corner) + surface_offset * frame.normal;
+  frame.first *= 1 - shrink;
+  frame.second *= 1 - shrink;
+  frame.third *= 1 - shrink;
+  return frame;
+}
+
+}  // namespace luxel

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "luxel/patch_mesh.h"
+
+namespace luxel {
+
+/// The frame of a picture of one flat polygon, in texels.
+struct PlanePicture {
+  Vec3 origin = Vec3::Zero();
+  Vec3 along_x = Vec3::Zero(), along_y = Vec3::Zero();  ///< texels a metre
+  int width = 1, height = 1;
+
+  Eigen::Vector2d at(const Vec3& point) const {
+    return {(point - origin).dot(along_x), (point - origin).dot(along_y)};
+  }
+};
+
+/// The smallest of the boxes around a polygon that have a side along one of its edges, with about `texels`
+/// texels inside the polygon. Where the box is mostly empty: one texel only.
+/// @param triangles  of the occluders, that the polygon is made of
+/// @param front      its normal, of any length but 0
+PlanePicture plane_picture(const Occluders& occluders, std::span<const int> triangles, const Vec3& front,
+                           double texels);
+
+/// Writes into each texel the patch at its centre; beside the outline the nearest; and HitMap::ask where that
+/// would leave some patch without a texel, or where nothing is near.
+void draw_patches(const PatchMesh& mesh, std::span<const int> patches, const PlanePicture& picture,
+                  std::span<std::int32_t> texels);
+
+}  // namespace luxel
