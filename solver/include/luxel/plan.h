@@ -112,6 +112,9 @@ struct Cost {
   double bytes = 0;  ///< at the peak, the program itself included
 };
 
+/// Memory that following the plan will take at its peak, about [bytes].
+double planned_bytes(const Plan& plan);
+
 /// What following the plan will cost, enclosures and mesh included. Draws at most 2,000 pairs of patches to
 /// see how many hide each other; the same figures every time.
 Cost estimated_cost(const Plan& plan, const PatchMesh& mesh, const Enclosures& enclosures,

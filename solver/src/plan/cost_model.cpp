@@ -130,7 +130,7 @@ double factor_bytes(double patches, Method method) {
 }
 
 Method cheapest_method(const SolveShape& shape) {
-  Method best = Method::cg;
+  Method best = Method::neumann;
   double least = solve_seconds(best, shape);
   const auto consider = [&](Method method) {
     const double seconds = solve_seconds(method, shape);
@@ -138,7 +138,7 @@ Method cheapest_method(const SolveShape& shape) {
     best = method;
     least = seconds;
   };
-  consider(Method::neumann);
+  consider(Method::cg);
   if (shape.entries && shape.patches <= largest_factor) consider(Method::cholesky);
   return best;
 }

@@ -53,7 +53,7 @@ double mesh_bytes(double patches);
 double operator_bytes(double patches, Precision precision);
 double factor_bytes(double patches, Method method);
 
-/// The cheapest of the three; cholesky only where it can be had.
+/// The cheapest of the three, bounces where they cost the same; cholesky only where it can be had.
 Method cheapest_method(const SolveShape& shape);
 
 }  // namespace luxel

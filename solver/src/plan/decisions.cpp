@@ -17,8 +17,12 @@ std::string count(double value, const std::string& noun) {
   return count(value) + " " + noun + (value == 1 ? "" : "s");
 }
 
-double pairs(double patches) {
-  return patches * (patches - 1) / 2;
+std::string patches(double value) {
+  return count(value) + (value == 1 ? " patch" : " patches");
+}
+
+double pairs(double size) {
+  return size * (size - 1) / 2;
 }
 
 double size(const SystemPlan& system) {
@@ -37,18 +41,16 @@ double channel_unknowns(const std::vector<SystemPlan>& systems, const Kind& kind
 
 }  // namespace
 
-std::optional<LeftOut> dark_groups(int groups, int patches, int all_patches) {
+std::optional<LeftOut> dark_groups(int groups, int dark, int all) {
   if (groups == 0) return std::nullopt;
-  return LeftOut{count(groups, "enclosure") + " of " + count(patches, "patch") + (patches == 1 ? "" : "es"),
+  return LeftOut{count(groups, "enclosure") + " of " + patches(dark),
                  "nothing emits in them, so that their light is exactly 0",
-                 count(pairs(all_patches) - pairs(all_patches - patches)) + " of " +
-                     count(pairs(all_patches)) + " pairs of patches"};
+                 count(pairs(all) - pairs(all - dark)) + " of " + count(pairs(all)) + " pairs of patches"};
 }
 
-std::optional<LeftOut> lone_patches(int patches) {
-  if (patches == 0) return std::nullopt;
-  return LeftOut{count(patches, "patch") + (patches == 1 ? "" : "es"), "they see no other, so that B = E",
-                 count(patches, "unknown")};
+std::optional<LeftOut> lone_patches(int lone) {
+  if (lone == 0) return std::nullopt;
+  return LeftOut{patches(lone), "they see no other, so that B = E", count(lone, "unknown")};
 }
 
 std::optional<LeftOut> pairs_between(const std::vector<SystemPlan>& systems) {

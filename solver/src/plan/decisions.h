@@ -8,8 +8,8 @@
 // What is left out, in words: each function tells one decision, or nothing where nothing is left out.
 namespace luxel {
 
-std::optional<LeftOut> dark_groups(int groups, int patches, int all_patches);
-std::optional<LeftOut> lone_patches(int patches);
+std::optional<LeftOut> dark_groups(int groups, int dark, int all);
+std::optional<LeftOut> lone_patches(int lone);
 std::optional<LeftOut> pairs_between(const std::vector<SystemPlan>& systems);
 /// Systems in which nothing can hide anything.
 std::optional<LeftOut> left_rays(const std::vector<SystemPlan>& systems);

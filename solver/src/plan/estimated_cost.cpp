@@ -90,11 +90,19 @@ SolveShape shape(const SystemPlan& system, const PatchMesh& part, const PatchFie
 
 }  // namespace
 
+double planned_bytes(const Plan& plan) {
+  double largest = 0;
+  for (const SystemPlan& system : plan.systems) {
+    const double n = static_cast<double>(system.patches.size());
+    largest = std::max(largest, operator_bytes(n, system.precision) + factor_bytes(n, system.method));
+  }
+  return mesh_bytes(plan.patches) + largest;
+}
+
 Cost estimated_cost(const Plan& plan, const PatchMesh& mesh, const Enclosures& enclosures,
                     const PlanOptions& options) {
   Cost cost;
   cost.cpu_seconds = mesh_seconds(mesh.size()) + enclosure_seconds(enclosures.rays);
-  double largest = 0;
   for (const SystemPlan& system : plan.systems) {
     const PatchMesh part = sub_mesh(mesh, system.patches, system.closed);
     const PairShares shares = pair_shares(part, system.hiding_polygons > 0, plan.keep_idle_occluders);
@@ -106,9 +114,8 @@ Cost estimated_cost(const Plan& plan, const PatchMesh& mesh, const Enclosures& e
     cost.cpu_seconds += assembly_seconds(pairs * shares.facing, accuracy);
     cost.cpu_seconds += visibility_seconds(pairs * (shares.partial - shares.crowded), pairs * shares.crowded);
     cost.cpu_seconds += closure_seconds(n, system.precision, system.closed) + solve_seconds(method, solved);
-    largest = std::max(largest, operator_bytes(n, system.precision) + factor_bytes(n, method));
   }
-  cost.bytes = mesh_bytes(mesh.size()) + largest;
+  cost.bytes = planned_bytes(plan);
   return cost;
 }
 
