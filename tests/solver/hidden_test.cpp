@@ -6,7 +6,7 @@
 
 #include "form_factors/event_cuts.h"
 #include "form_factors/hidden_kernel.h"
-#include "form_factors/hidden_quadrature.h"
+#include "form_factors/hidden_rules.h"
 #include "luxel/form_factors.h"
 
 namespace luxel {

@@ -105,6 +105,9 @@ std::vector<int> cells_of_patches(const PatchMesh& mesh, const Cells& cells) {
 // Variance of a share p over p (1 - p) rays^(-2 order), measured at the mouth of the Cornell box.
 constexpr double usual_variance = 0.36;
 
+// Rays below which a count is taken as independent events.
+constexpr double few_rays = 16;
+
 /// What the rays of one patch met, as shares; the error is the standard error of their sum, from the scatter
 /// between runs.
 struct Shares {
@@ -129,7 +132,10 @@ Shares measured(const std::vector<Met>& met) {
   // the scatter of so few runs may be small by chance: averaged with what is usual for such a share
   const double scattered = squares / (runs - 1) * std::pow(runs, -2 * convergence_order);
   const double usual = usual_variance * mean * (1 - mean) * std::pow(count, -2 * convergence_order);
-  shares.error = std::sqrt((scattered + usual) / 2);
+  // a net is no better than chance at what only a few of its rays meet
+  const bool rare = std::min(mean, 1 - mean) * static_cast<double>(count) < few_rays;
+  const double by_chance = mean * (1 - mean) / static_cast<double>(count);
+  shares.error = std::sqrt(rare ? by_chance : (scattered + usual) / 2);
   return shares;
 }
 

@@ -9,10 +9,6 @@
 
 namespace luxel {
 
-/// Quadrature points of a convex polygon with area weights: exact for polynomials of degree 1, 2 or 3, 4, 6
-/// for order 1 to 4 (triangles: 1, 3, 6, 12 points; quads: order^2; others: cut into these).
-void add_points(const Polygon& cell, int order, OuterPoints& points);
-
 /// An integral over a cell and what it may be wrong by.
 struct HiddenIntegral {
   double value = 0;

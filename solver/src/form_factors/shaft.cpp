@@ -23,8 +23,9 @@ Lanes distances(const ShaftEnd& end, const Plane& plane) {
 
 }  // namespace
 
-ShaftEnd shaft_end(const Polygon& hull, const Vec3& centre, double radius) {
+ShaftEnd shaft_end(const Polygon& hull, const Vec3& centre, double radius, bool planar) {
   ShaftEnd end;
+  end.planar = planar;
   end.count = std::min(hull.count, 8);
   for (int k = 0; k < 8; ++k) {
     const Vec3& corner = hull[std::min(k, end.count - 1)];
@@ -52,7 +53,12 @@ FaceInShaft face_in_shaft(const ShaftEnd& a, const ShaftEnd& b, const OccluderFa
   const double wa_high = std::max(std::abs(a_low), std::abs(a_high));
   const double wb_high = std::max(std::abs(b_low), std::abs(b_high));
   const double rounding = product_rounding * (wa_high + wb_high);
-  bool hides = across && wa_high > in_plane && wb_high > in_plane;
+  // what lies in the face's own plane is not hidden by it: a flat hull can only touch the plane, a solid one
+  // may have patches in it
+  const double wa_low = std::min(std::abs(a_low), std::abs(a_high));
+  const double wb_low = std::min(std::abs(b_low), std::abs(b_high));
+  bool hides = across && wa_high > in_plane && wb_high > in_plane && (a.planar || wa_low > side_tolerance) &&
+               (b.planar || wb_low > side_tolerance);
   for (int edge = 0; edge < face.outline.count; ++edge) {
     const Lanes fa = distances(a, face.sides[edge]), fb = distances(b, face.sides[edge]);
     const bool outside = fa.maxCoeff() <= side_tolerance && fb.maxCoeff() <= side_tolerance;

@@ -13,11 +13,12 @@ struct ShaftEnd {
   using Lanes = Eigen::Array<double, 8, 1>;
   Lanes x, y, z;
   int count = 0;
+  bool planar = true;          ///< the hull of patches in one plane
   Vec3 centre = Vec3::Zero();  ///< of a sphere around the hull
   double radius = 0;
 };
 
-ShaftEnd shaft_end(const Polygon& hull, const Vec3& centre, double radius);
+ShaftEnd shaft_end(const Polygon& hull, const Vec3& centre, double radius, bool planar = true);
 
 /// How an occluder's face lies to the lines of sight between two hulls.
 struct FaceInShaft {

@@ -71,7 +71,7 @@ class VisibilityPass {
       : mesh_(mesh), tree_(tree), set_(set), options_(options), exchange_(exchange_areas) {
     ends_.reserve(tree.clusters.size());
     for (const Cluster& cluster : tree.clusters) {
-      ends_.push_back(shaft_end(cluster.hull, cluster.centre, cluster.radius));
+      ends_.push_back(shaft_end(cluster.hull, cluster.centre, cluster.radius, cluster.planar));
     }
     leaf_.resize(tree.patches.size());
     for (std::size_t k = 0; k < tree.clusters.size(); ++k) {

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <vector>
+
+#include "form_factors/hidden_kernel.h"
+#include "form_factors/polygon.h"
+
+namespace luxel {
+
+/// Quadrature points of a convex polygon with area weights: exact for polynomials of degree 1, 2 or 3, 4, 6
+/// for order 1 to 4 (triangles: 1, 3, 6, 12 points; quads: order^2; others: cut into these). All points are
+/// moved by 1e-9 of their cell, so that none lies on an axis of symmetry.
+void add_points(const Polygon& cell, int order, OuterPoints& points);
+
+/// Two rules side by side on a triangle (two of three points, degree 2) or a quad (two of four points, degree
+/// 3): the first half of the points added is the one, the second half the other; their difference tells how
+/// far the integrand is from smooth.
+void add_rule_pair(const Polygon& triangle_or_quad, OuterPoints& points);
+
+/// The triangles and quads of a fan around the first corner.
+std::vector<Polygon> triangles_and_quads(const Polygon& cell);
+
+}  // namespace luxel
