@@ -188,6 +188,17 @@ void add_solver(CLI::App& app, SolveOptions& options) {
       ->group(solving);
 }
 
+void add_plan(CLI::App& app, Savings& savings) {
+  value_option(app, "--plan", "HOW", "auto or full",
+               "auto leaves out what the scene does not need; full computes everything, for the same result; "
+               "default: auto",
+               [&savings](const std::string& text) {
+                 savings = text == "full" ? Savings::none() : Savings();
+                 return text == "auto" || text == "full";
+               })
+      ->group(solving);
+}
+
 void add_outputs(CLI::App& app, std::vector<std::string>& outputs, const char* description) {
   app.add_option("-o,--output", outputs, wrapped(description))
       ->type_name("FILE")
@@ -307,6 +318,7 @@ Command parse_command_line(int argc, const char* const* argv) {
       ->group(output);
   add_operator(*solve_app, solve.transport);
   add_solver(*solve_app, solve.solve);
+  add_plan(*solve_app, solve.savings);
   add_general(*solve_app, solve.general);
   solve_app->footer(solve_footer);
 
