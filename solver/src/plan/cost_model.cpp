@@ -46,8 +46,8 @@ constexpr double open_passes = 3;
 
 // The program with its libraries loaded; patches, clusters, ray scene, three channels of everything and the
 // writers' buffers [a patch].
-constexpr double program_bytes = 64e6;
-constexpr double patch_bytes = 1500;
+constexpr double program_bytes = 12e6;
+constexpr double patch_bytes = 2500;
 
 // Beyond this the factor's N^2 / 2 float32 numbers are 0.5 GB, and it would take hundreds of columns to pay.
 constexpr double largest_factor = 16'000;
