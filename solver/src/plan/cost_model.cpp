@@ -33,7 +33,7 @@ constexpr double mesh_step = 3e-6;
 constexpr double enclosure_ray = 2e-7;
 
 // A facing pair at accuracy 1e-3, and how much more each digit costs.
-constexpr double facing_pair = 5e-9;
+constexpr double facing_pair = 12e-9;
 constexpr double pair_digit = 1.3;
 
 // A pair that is clipped, and one that rays decide.
@@ -41,7 +41,7 @@ constexpr double clipped_pair = 2.5e-6;
 constexpr double crowded_pair = 4e-6;
 
 // Passes over the matrix that close_rows() takes.
-constexpr double closure_passes = 20;
+constexpr double closure_passes = 40;
 constexpr double open_passes = 3;
 
 // The program with its libraries loaded; patches, clusters, ray scene, three channels of everything and the
