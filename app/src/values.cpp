@@ -2,6 +2,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <sstream>
 
 #include <fmt/format.h>
 
@@ -71,6 +72,19 @@ std::string readable_bytes(double bytes) {
   if (bytes >= 0x1p30) return fmt::format("{:.1f} GiB", bytes / 0x1p30);
   if (bytes >= 0x1p20) return fmt::format("{:.0f} MiB", bytes / 0x1p20);
   return fmt::format("{:.0f} KiB", bytes / 0x1p10);
+}
+
+std::string wrapped(const std::string& text, std::size_t width) {
+  std::string result;
+  std::size_t column = 0;
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    const bool breaks = column > 0 && column + 1 + word.size() > width;
+    if (column > 0) result += breaks ? '\n' : ' ';
+    column = breaks ? word.size() : column + (column > 0) + word.size();
+    result += word;
+  }
+  return result;
 }
 
 }  // namespace luxel::app

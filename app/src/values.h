@@ -26,4 +26,7 @@ std::optional<std::array<double, 6>> parse_point(std::string_view text);
 /// "1.2 GiB": a memory size to read.
 std::string readable_bytes(double bytes);
 
+/// The same words with line breaks, so that no line is longer than `width` where words allow.
+std::string wrapped(const std::string& text, std::size_t width);
+
 }  // namespace luxel::app

@@ -9,7 +9,6 @@
 #include <string_view>
 #include <vector>
 
-#include "luxel/enclosures.h"
 #include "luxel/patch_mesh.h"
 #include "luxel/progress.h"
 #include "luxel/ray_scene.h"
@@ -85,7 +84,6 @@ class GatherOperator : public TransportOperator {
 /// @throws std::invalid_argument for options out of range or a mesh that does not belong to the others;
 /// Cancelled
 std::unique_ptr<GatherOperator> gather_operator(const PatchMesh& mesh, const RayScene& occluders,
-                                                const Enclosures& enclosures,
                                                 const GatherOptions& options = {},
                                                 const Progress& progress = {});
 
@@ -128,13 +126,12 @@ struct GatheredSolution {
 /// much of the surface they are met by the rays instead. The same input and seed give the same bits for any
 /// number of threads.
 /// Cost: 30 to 50 ns of CPU a ray on merged polygons, 100 to 200 on a million triangles.
-/// @param enclosures  of this mesh: in closed ones no ray is lost
 /// @param solving     method, bounces and callbacks of the iteration on U; its tolerance is raised to a
 /// hundredth of the accuracy, since less is lost in the sampling
 /// @throws SingularSystem; std::invalid_argument; Cancelled
 GatheredSolution solve_gathered(const PatchMesh& mesh, const RayScene& occluders,
-                                const Enclosures& enclosures, const PatchField& reflectance,
-                                const PatchField& emission, const GatherOptions& options = {},
-                                const SolveOptions& solving = {}, const Progress& progress = {});
+                                const PatchField& reflectance, const PatchField& emission,
+                                const GatherOptions& options = {}, const SolveOptions& solving = {},
+                                const Progress& progress = {});
 
 }  // namespace luxel

@@ -17,6 +17,10 @@ namespace {
 // repair.
 constexpr int fresh_starts = 4;
 
+// Rounding and the residual asked may leave a B that should be 0 this far below it, as a share of the largest
+// B.
+constexpr double rounding_of_radiosity = 1e-6;
+
 void require(bool holds, const std::string& message) {
   if (!holds) throw std::invalid_argument("solve: " + message);
 }
@@ -95,6 +99,12 @@ PatchField run(const RadiositySystem& system, PatchField start, const SolveOptio
   }
 }
 
+// With F >= 0 and a series that converges, B >= E >= 0. A negative B therefore proves that the series
+// diverges, and that what solves the equations is no light.
+bool unphysical(const PatchField& radiosity) {
+  return radiosity.minCoeff() < -rounding_of_radiosity * radiosity.cwiseAbs().maxCoeff();
+}
+
 }  // namespace
 
 RadiositySolution solve(const TransportOperator& transport, const PatchField& reflectance,
@@ -136,6 +146,12 @@ RadiositySolution solve(const TransportOperator& transport, const PatchField& re
   }
   if (report.converged && report.stopped != Stopped::bounces && report.stopped != Stopped::caller) {
     watch.stop(Stopped::converged, {});
+  }
+  if (!bound.exists() && report.converged && !options.bounces && unphysical(solution.radiosity)) {
+    report.converged = false;
+    watch.stop(Stopped::diverged,
+               "the equations are solved by negative radiosities only: the operator returns more light than "
+               "it is given");
   }
   if (!bound.exists()) {
     if (!report.message.empty()) report.message += "; ";
