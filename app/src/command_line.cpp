@@ -106,6 +106,7 @@ Command parse_command_line(int argc, const char* const* argv) {
   add_full_precision(*solve_app, solve.full_precision);
   add_operator(*solve_app, solve.transport);
   add_solver(*solve_app, solve.solve);
+  add_plan(*solve_app, solve.savings);
   add_general(*solve_app, solve.general);
   solve_app->footer(solve_footer);
 

@@ -217,6 +217,17 @@ void add_comparison(CLI::App& app, CompareCommand& compare) {
       ->group(output);
 }
 
+void add_plan(CLI::App& app, Savings& savings) {
+  value_option(app, "--plan", "HOW", "auto or full",
+               "auto leaves out what the scene does not need; full computes everything, for the same result; "
+               "default: auto",
+               [&savings](const std::string& text) {
+                 savings = text == "full" ? Savings::none() : Savings();
+                 return text == "auto" || text == "full";
+               })
+      ->group(solving);
+}
+
 void add_outputs(CLI::App& app, std::vector<std::string>& outputs, const char* description) {
   app.add_option("-o,--output", outputs, wrapped(description, description_width))
       ->type_name("FILE")

@@ -10,6 +10,7 @@
 
 #include "luxel/form_factors.h"
 #include "luxel/mesh_scene.h"
+#include "luxel/plan.h"
 #include "luxel/solve.h"
 
 namespace luxel::app {
@@ -44,6 +45,7 @@ struct SolveCommand {
   SceneOptions scene;
   OperatorOptions transport;
   SolveOptions solve;
+  Savings savings;
   std::vector<std::string> outputs;
   bool full_precision = false;
 };

@@ -288,7 +288,7 @@ class VisibilityPass {
 
 void subtract_hidden(const PatchMesh& mesh, const ClusterTree& tree, const FormFactorOptions& options,
                      ExchangeMatrix& exchange_areas, FormFactorReport& report, const Progress& progress) {
-  const OccluderSet set = occluder_set(mesh, tree);
+  const OccluderSet set = occluder_set(mesh, tree, options.keep_idle_occluders);
   for (const Occluder& occluder : set.occluders) report.occluders += occluder.face_count();
   if (set.occluders.empty()) return;
   const Tally tally = VisibilityPass(mesh, tree, set, options, exchange_areas).run(progress);
