@@ -21,12 +21,12 @@ namespace luxel {
 /// How the irradiance is gathered by rays. The door for most users is solve_gathered().
 struct GatherOptions {
   double accuracy = 0.01;  ///< asked relative RMS error of single patches' irradiance, in (0, 1); sets `rays`
-  std::optional<int> rays;  ///< rays from each patch, >= 16; overrides `accuracy`
-  std::optional<int>
-      stored_rays;  ///< of these kept to iterate on, >= 16; by default a quarter, see gather_plan
-  std::optional<int> shadow_rays;  ///< from a patch to a lamp that it sees in part, >= 16
-  bool fit = true;                 ///< smooth the noise between neighbours on one plane where they agree
-  std::uint64_t seed = 0;          ///< another seed, another sample of the same error
+  std::optional<int> rays = {};  ///< rays from each patch, >= 16; overrides `accuracy`
+  std::optional<int> stored_rays =
+      {};  ///< of these kept to iterate on, >= 16; by default a quarter, see gather_plan
+  std::optional<int> shadow_rays = {};  ///< from a patch to a lamp that it sees in part, >= 16
+  bool fit = true;                      ///< smooth the noise between neighbours on one plane where they agree
+  std::uint64_t seed = 0;               ///< another seed, another sample of the same error
 };
 
 /// What solve_gathered() will do for a mesh.
