@@ -44,8 +44,8 @@ GatherPlan gather_plan(const PatchMesh& mesh, const PatchField& emission, const 
 
 /// F by quasi-random rays: row i holds the shares of patch i's rays that met each patch. Rows are exactly 1
 /// where no ray is lost (always in closed enclosures); a ray that escapes or meets a back brings nothing. Not
-/// symmetric: reciprocity holds within the sampling error. Error of F X: about 0.7 rays^-2/3 of a smooth X's
-/// variation; see docs/decisions/0010-gather.md.
+/// symmetric: reciprocity holds within the sampling error. Error of F X: about 0.45 rays^-0.67 of a smooth
+/// X's variation; see docs/decisions/0010-gather.md.
 class GatherOperator : public TransportOperator {
  public:
   /// Lanes of a packet: patches whose rays are traced together.
@@ -79,7 +79,7 @@ class GatherOperator : public TransportOperator {
 };
 
 /// The operator with all `rays` of the options stored, to be used with solve(). Emission given to solve() is
-/// then met by chance like any other light: right, but with ten times the noise of solve_gathered() where
+/// then met by chance like any other light: right, but with much more noise than of solve_gathered() where
 /// lamps are small. Memory: 4 bytes a ray.
 /// @throws std::invalid_argument for options out of range or a mesh that does not belong to the others;
 /// Cancelled

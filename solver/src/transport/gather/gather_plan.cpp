@@ -11,8 +11,10 @@ namespace luxel {
 namespace {
 
 // Error of single patches' irradiance: error_at_one rays^-error_order, measured on the Cornell box
-// (docs/decisions/0010-gather.md); scenes with more clutter have up to 1.4 times it.
-constexpr double error_at_one = 0.45, error_order = 0.67;
+// (docs/decisions/0010-gather.md). The lower one holds for packets that are small against their polygon,
+// where the fit takes the noise of neighbours out.
+constexpr double error_at_one = 0.45, fitted_error_at_one = 0.33, error_order = 0.67;
+constexpr int patches_of_large_polygon = 2000;
 
 constexpr int least_rays = 16, most_rays = 1 << 20;
 
@@ -55,7 +57,9 @@ GatherPlan gather_plan(const PatchMesh& mesh, const PatchField& emission, const 
   in_range(options.shadow_rays, "shadow_rays");
 
   GatherPlan plan;
-  const double wanted = std::pow(error_at_one / options.accuracy, 1 / error_order);
+  const bool fine = options.fit && mesh.size() / patches_of_large_polygon > mesh.occluders.polygon_count;
+  const double at_one = fine ? fitted_error_at_one : error_at_one;
+  const double wanted = std::pow(at_one / options.accuracy, 1 / error_order);
   plan.rays = options.rays.value_or(net_size(std::min<double>(wanted, most_rays / 2)));
   const double affordable = stored_in_all / std::max(1, mesh.size());
   const int quarter = std::max(least_rays, net_size(plan.rays / 4.0));

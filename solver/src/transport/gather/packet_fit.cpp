@@ -11,8 +11,7 @@ namespace {
 // Three numbers are fitted: with fewer patches the scatter about them says little.
 constexpr std::size_t least_patches = 8;
 
-// Below this the field is not linear here and the fit does harm: at 4,096 rays 0.199 % error without against
-// 0.215 % with it (docs/decisions/0010-gather.md).
+// Below this the scatter is hardly noise: the field is not linear here, and the fit would do harm.
 constexpr double least_share = 0.25;
 
 // Patches in one plane [sine, and share of the packet's extent]: above the rounding of coordinates.
