@@ -7,6 +7,7 @@
 
 #include "luxel/input_error.h"
 #include "luxel/mesh_scene.h"
+#include "luxel/plan.h"
 #include "luxel/read_scene.h"
 #include "memory_plan.h"
 #include "usage.h"
@@ -15,52 +16,14 @@ namespace luxel::app {
 
 namespace {
 
-template <class Real>
-void add_rows(const ExchangeMatrix& exchange, std::vector<double>& sums) {
-  for (int i = 1; i < exchange.size(); ++i) {
-    const Real* row = exchange.row<Real>(i);
-    double sum = 0;
-    for (int j = 0; j < i; ++j) {
-      sum += row[j];
-      sums[j] += row[j];
-    }
-    sums[i] += sum;
-  }
-}
-
-RowErrors row_errors(const ExchangeMatrix& exchange, const std::vector<double>& areas,
-                     const Enclosures& enclosures) {
-  RowErrors errors;
-  errors.of_patch.assign(areas.size(), 0.0);
-  if (exchange.precision() == Precision::float32) {
-    add_rows<float>(exchange, errors.of_patch);
-  } else {
-    add_rows<double>(exchange, errors.of_patch);
-  }
-  double total = 0;
-  for (std::size_t i = 0; i < areas.size(); ++i) {
-    double& error = errors.of_patch[i];
-    error = std::abs(error / areas[i] + enclosures.open_share[i] + enclosures.back_share[i] - 1);
-    const double certain = std::max(0.0, error - 3 * enclosures.share_error[i]);
-    errors.max = std::max(errors.max, error);
-    errors.certain_max = std::max(errors.certain_max, certain);
-    errors.rms += areas[i] * error * error;
-    errors.certain_rms += areas[i] * certain * certain;
-    total += areas[i];
-  }
-  errors.rms = std::sqrt(errors.rms / total);
-  errors.certain_rms = std::sqrt(errors.certain_rms / total);
-  return errors;
-}
-
 void compute(Assembly& assembly, const FormFactorOptions& options, bool raw, const Progress& progress) {
   const PatchMesh& mesh = assembly.mesh;
   OperatorRecord& record = assembly.record;
   record.options = options;
-  record.enclosures = find_enclosures(mesh, RayScene(mesh.occluders), 256, progress);
+  record.enclosures = planned_enclosures(mesh, {}, progress);
   FormFactors factors = form_factors(mesh, options, progress);
   record.form_factors = factors.report;
-  assembly.rows = row_errors(factors.exchange_areas, mesh.areas, record.enclosures);
+  assembly.rows = row_errors(row_sums(factors.exchange_areas, mesh.areas), mesh.areas, record.enclosures);
   if (raw) {
     assembly.transport = std::make_unique<DenseOperator>(std::move(factors.exchange_areas), mesh.areas);
     record.closure.before = record.closure.after = {assembly.rows.max, assembly.rows.rms};
@@ -84,15 +47,40 @@ void load(Assembly& assembly, const OperatorOptions& options, const Progress& pr
   assembly.rows.rms = assembly.record.closure.before.rms;
 }
 
-void report_operator(const Assembly& assembly, const Seconds& seconds, Report& report) {
+}  // namespace
+
+RowErrors row_errors(const std::vector<double>& row_sums, const std::vector<double>& areas,
+                     const Enclosures& enclosures) {
+  RowErrors errors;
+  errors.of_patch = row_sums;
+  double total = 0;
+  for (std::size_t i = 0; i < areas.size(); ++i) {
+    double& error = errors.of_patch[i];
+    if (std::isnan(error)) continue;
+    error = std::abs(error + enclosures.open_share[i] + enclosures.back_share[i] - 1);
+    const double certain = std::max(0.0, error - 3 * enclosures.share_error[i]);
+    errors.max = std::max(errors.max, error);
+    errors.certain_max = std::max(errors.certain_max, certain);
+    errors.rms += areas[i] * error * error;
+    errors.certain_rms += areas[i] * certain * certain;
+    total += areas[i];
+  }
+  if (total == 0) return errors;
+  errors.rms = std::sqrt(errors.rms / total);
+  errors.certain_rms = std::sqrt(errors.certain_rms / total);
+  return errors;
+}
+
+void report_operator(const Assembly& assembly, std::string_view kind, std::size_t bytes,
+                     const Seconds& seconds, Report& report) {
   const OperatorRecord& record = assembly.record;
   report.scene.closed = record.enclosures.closed;
   report.scene.enclosures = record.enclosures.count;
   if (!record.closure.message.empty()) report.scene.warnings.push_back(record.closure.message);
   Report::Operator figures;
-  figures.kind = assembly.transport->kind();
+  figures.kind = kind;
   figures.accuracy = record.options.accuracy;
-  figures.bytes = assembly.transport->bytes();
+  figures.bytes = bytes;
   figures.rays = record.enclosures.rays + record.form_factors.rays;
   figures.cpu_seconds = seconds.cpu;
   figures.wall_seconds = seconds.wall;
@@ -103,8 +91,6 @@ void report_operator(const Assembly& assembly, const Seconds& seconds, Report& r
   figures.largest_correction = record.closure.largest_correction;
   report.transport = figures;
 }
-
-}  // namespace
 
 PatchMesh read_and_mesh(const SceneOptions& options, const GeneralOptions& general, const Progress& progress,
                         Report& report) {
@@ -138,7 +124,7 @@ Assembly assemble(const SceneOptions& scene, const OperatorOptions& options, con
   } else {
     load(assembly, options, progress);
   }
-  report_operator(assembly, watch.elapsed(), report);
+  report_operator(assembly, assembly.transport->kind(), assembly.transport->bytes(), watch.elapsed(), report);
   if (!options.save.empty()) {
     save_operator(options.save, assembly.mesh, *assembly.transport, assembly.record, progress);
   }

@@ -7,6 +7,7 @@
 #include "commands.h"
 #include "luxel/operator_file.h"
 #include "luxel/report.h"
+#include "usage.h"
 
 namespace luxel::app {
 
@@ -34,6 +35,15 @@ struct Assembly {
 /// @throws InputError, Cancelled
 Assembly assemble(const SceneOptions& scene, const OperatorOptions& options, const GeneralOptions& general,
                   std::optional<Method> method, const Progress& progress, Report& report);
+
+/// Raw row errors from raw row sums, N; patches whose row sum is not a number were not assembled and do not
+/// count.
+RowErrors row_errors(const std::vector<double>& row_sums, const std::vector<double>& areas,
+                     const Enclosures& enclosures);
+
+/// Fills in report.transport, and closed and enclosures of report.scene.
+void report_operator(const Assembly& assembly, std::string_view kind, std::size_t bytes,
+                     const Seconds& seconds, Report& report);
 
 /// Whether the raw rows are as accurate as asked, as far as the shares measured by rays can tell: RMS <=
 /// accuracy, and in `factors` the largest <= 2 accuracy.

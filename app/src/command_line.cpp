@@ -58,7 +58,7 @@ std::vector<std::string> command_names(const CLI::App& app) {
 
 // What is typed after `luxel`, where it is no command.
 [[noreturn]] void refuse_command(const CLI::App& app, const std::string& typed) {
-  static const std::vector<std::string> later = {"compare", "stress", "render"};
+  static const std::vector<std::string> later = {"render"};
   const std::vector<std::string> names = command_names(app);
   if (std::find(later.begin(), later.end(), typed) != later.end()) {
     throw InputError(fmt::format("the command '{}' is not part of this version", typed));
@@ -106,6 +106,7 @@ Command parse_command_line(int argc, const char* const* argv) {
   add_full_precision(*solve_app, solve.full_precision);
   add_operator(*solve_app, solve.transport);
   add_solver(*solve_app, solve.solve);
+  add_plan(*solve_app, solve.savings);
   add_general(*solve_app, solve.general);
   solve_app->footer(solve_footer);
 
@@ -129,6 +130,27 @@ Command parse_command_line(int argc, const char* const* argv) {
   add_scene(*inspect_app, inspect.scene);
   add_general(*inspect_app, inspect.general);
   inspect_app->footer(inspect_footer);
+
+  CompareCommand compare;
+  CLI::App* compare_app = app.add_subcommand("compare", "Every solver on one system: error against run time");
+  compare_app->allow_extras()->group("Commands");
+  add_scene(*compare_app, compare.scene);
+  add_comparison(*compare_app, compare);
+  add_outputs(*compare_app, compare.outputs,
+              "Write this file, by its extension .csv .json .html .png or .svg; may be given again");
+  add_operator(*compare_app, compare.transport);
+  add_general(*compare_app, compare.general);
+  compare_app->footer(compare_footer);
+
+  StressCommand stress;
+  CLI::App* stress_app = app.add_subcommand("stress", "Stiff and extreme cases: each solver's verdict");
+  stress_app->allow_extras()->group("Commands");
+  stress_app->add_option("NAME", stress.cases, "Run these cases only");
+  add_methods(*stress_app, stress.methods);
+  add_outputs(*stress_app, stress.outputs,
+              "Write this file, by its extension .csv or .json; may be given again");
+  add_general(*stress_app, stress.general);
+  stress_app->footer(stress_footer);
 
   try {
     app.parse(argc, argv);
@@ -156,6 +178,15 @@ Command parse_command_line(int argc, const char* const* argv) {
   if (*inspect_app) {
     check_scene(*inspect_app, inspect.scene);
     return inspect;
+  }
+  if (*compare_app) {
+    check_scene(*compare_app, compare.scene);
+    check_operator(*compare_app, compare.transport);
+    return compare;
+  }
+  if (*stress_app) {
+    refuse_extras(*stress_app, stress.cases.empty() ? "" : stress.cases.back());
+    return stress;
   }
   throw InputError(
       fmt::format("no command given (expected {}; see luxel --help)", fmt::join(command_names(app), ", ")));

@@ -173,6 +173,61 @@ void add_solver(CLI::App& app, SolveOptions& options) {
       ->group(solving);
 }
 
+void add_methods(CLI::App& app, std::vector<Method>& methods) {
+  app.add_option_function<std::vector<std::string>>(
+         "--solver",
+         [&methods](const std::vector<std::string>& names) {
+           for (const std::string& each : names) {
+             const auto method = method_from_name(each);
+             if (!method || *method == Method::automatic) {
+               refuse("--solver", each, "the name of a solver: cholesky, lu, cg, gmres, neumann, ...");
+             }
+             methods.push_back(*method);
+           }
+         },
+         wrapped(
+             "Run these solvers only, with commas between: cholesky, lu, cg, gmres, neumann, gauss-seidel, "
+             "symmetric-gauss-seidel, southwell; default: all",
+             description_width))
+      ->delimiter(',')
+      ->type_name("METHOD,...")
+      ->group(solving);
+}
+
+void add_comparison(CLI::App& app, CompareCommand& compare) {
+  add_methods(app, compare.methods);
+  number_option(app, "--tolerance", "T", 0, false, 1, "a number above 0 and up to 1",
+                "Stop each solver at this relative residual; default: 1e-10",
+                [&compare](double x) { compare.tolerance = x; })
+      ->group(solving);
+  app.add_option(
+         "--reference", compare.reference,
+         wrapped("A .csv of patches to measure errors against, as solve writes it; default: the best direct "
+                 "solve with refinement",
+                 description_width))
+      ->type_name("FILE")
+      ->group(solving);
+  app.add_flag(
+         "--operators", compare.operators,
+         wrapped("Also compare on a coarser and a finer operator (accuracy x 10 and / 10), and with half and "
+                 "twice the patches",
+                 description_width))
+      ->group(transport);
+  app.add_flag("--wall", compare.wall_time, "Plot errors against wall time instead of CPU time")
+      ->group(output);
+}
+
+void add_plan(CLI::App& app, Savings& savings) {
+  value_option(app, "--plan", "HOW", "auto or full",
+               "auto leaves out what the scene does not need; full computes everything, for the same result; "
+               "default: auto",
+               [&savings](const std::string& text) {
+                 savings = text == "full" ? Savings::none() : Savings();
+                 return text == "auto" || text == "full";
+               })
+      ->group(solving);
+}
+
 void add_outputs(CLI::App& app, std::vector<std::string>& outputs, const char* description) {
   app.add_option("-o,--output", outputs, wrapped(description, description_width))
       ->type_name("FILE")

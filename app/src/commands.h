@@ -10,6 +10,7 @@
 
 #include "luxel/form_factors.h"
 #include "luxel/mesh_scene.h"
+#include "luxel/plan.h"
 #include "luxel/solve.h"
 
 namespace luxel::app {
@@ -44,6 +45,7 @@ struct SolveCommand {
   SceneOptions scene;
   OperatorOptions transport;
   SolveOptions solve;
+  Savings savings;
   std::vector<std::string> outputs;
   bool full_precision = false;
 };
@@ -65,11 +67,33 @@ struct InspectCommand {
   SceneOptions scene;
 };
 
+/// luxel compare
+struct CompareCommand {
+  GeneralOptions general;
+  SceneOptions scene;
+  OperatorOptions transport;
+  std::vector<Method> methods;  ///< empty: all that the operator allows
+  double tolerance = 1e-10;     ///< relative residual asked of each
+  bool operators = false;       ///< also a coarser and a finer operator, and half and twice the patches
+  bool wall_time = false;       ///< plots over wall time instead of CPU time
+  std::string reference;        ///< a CSV of patches to measure against; empty: the best direct solve
+  std::vector<std::string> outputs;
+};
+
+/// luxel stress
+struct StressCommand {
+  GeneralOptions general;
+  std::vector<std::string> cases;  ///< by name; empty: all
+  std::vector<Method> methods;     ///< empty: all
+  std::vector<std::string> outputs;
+};
+
 /// --help, --version: a text for stdout, and nothing else to do.
 struct ShowText {
   std::string text;
 };
 
-using Command = std::variant<ShowText, SolveCommand, FactorsCommand, InspectCommand>;
+using Command =
+    std::variant<ShowText, SolveCommand, FactorsCommand, InspectCommand, CompareCommand, StressCommand>;
 
 }  // namespace luxel::app

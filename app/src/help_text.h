@@ -37,4 +37,20 @@ constexpr const char* inspect_footer =
     "  luxel inspect room.obj\n"
     "  luxel inspect room.json --patches 100000 --json";
 
+constexpr const char* compare_footer =
+    "\nExamples:\n"
+    "  luxel compare room.obj                              a table of all solvers\n"
+    "  luxel compare room.json -o room.html -o room.json   with plots: error against time, residual\n"
+    "  luxel compare room.obj --operators --solver cg,cholesky\n"
+    "\nError: largest |B - B*| over patches and channels relative to the largest B*. A solver that takes ten "
+    "times the\nothers' time is stopped and shown as such.";
+
+constexpr const char* stress_footer =
+    "\nExamples:\n"
+    "  luxel stress\n"
+    "  luxel stress reflectance_0.999999 pinhole_box --json\n"
+    "\nVerdicts: exact (within the case's tolerance), bounded (error <= error bound <= 1e-2), refused (no "
+    "result, "
+    "the\ncause named), failed. Exit status 1 where a verdict is not one that the case allows.";
+
 }  // namespace luxel::app

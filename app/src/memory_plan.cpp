@@ -10,12 +10,6 @@ namespace luxel::app {
 
 namespace {
 
-// 4000 patches are 64 MB in float64, less than the libraries and the patches themselves take at that size.
-constexpr int small_system = 4000;
-
-// Row sums of float32 entries are off by 3e-8 RMS and up to 1e-7 (measured at 10 000 patches).
-constexpr double float32_accuracy = 2e-7;
-
 // The program with its libraries loaded [bytes], measured.
 constexpr double program_bytes = 64e6;
 
@@ -24,10 +18,6 @@ constexpr double program_bytes = 64e6;
 constexpr double patch_bytes = 1500;
 
 }  // namespace
-
-Precision storage_precision(int patches, double accuracy) {
-  return patches <= small_system || accuracy < float32_accuracy ? Precision::float64 : Precision::float32;
-}
 
 std::size_t mesh_bytes(int patches) {
   return static_cast<std::size_t>(program_bytes + patch_bytes * patches);

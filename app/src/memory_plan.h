@@ -8,10 +8,6 @@
 
 namespace luxel::app {
 
-/// float64 for systems so small that it costs nothing, and where the rounding of float32 (6e-8 of an entry)
-/// would be felt in the accuracy that is asked for; else float32.
-Precision storage_precision(int patches, double accuracy);
-
 /// Memory that reading and cutting a scene into so many patches takes, about [bytes].
 std::size_t mesh_bytes(int patches);
 

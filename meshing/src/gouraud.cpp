@@ -1,109 +1,24 @@
 #include "luxel/gouraud.h"
 
-#include <algorithm>
-#include <cmath>
-#include <numeric>
 #include <stdexcept>
 
-#include "angle.h"
+#include "smooth_fans.h"
 #include "vertex_corners.h"
 
 namespace luxel {
 
 namespace {
 
-// A patch rises in front of another one if its centroid is higher above that one's plane than this share of
-// its distance: above rounding, below any dihedral angle that matters (0.06 degrees).
-constexpr double rise = 1e-3;
-
-/// One side of an edge that leaves a vertex: the corner it belongs to and whether the patch runs along it
-/// outwards, away from the vertex.
-struct EdgeUse {
-  int other;  // the vertex at the far end
-  bool outwards;
-  int corner;  // place among the vertex's corners
-};
-
-/// Groups the corners around one vertex into smooth fans.
-class FanFinder {
- public:
-  FanFinder(const PatchMesh& mesh, double crease_angle)
-      : mesh_(mesh), smooth_(std::cos(crease_angle / degrees_per_radian)) {}
-
-  /// For each corner the place of the first corner of its fan.
-  const std::vector<int>& find(int vertex, std::span<const Corner> corners) {
-    parent_.resize(corners.size());
-    std::iota(parent_.begin(), parent_.end(), 0);
-    uses_.clear();
-    for (int c = 0; c < static_cast<int>(corners.size()); ++c) {
-      const auto [before, after] = neighbours(mesh_.corners[corners[c].patch], corners[c].place);
-      uses_.push_back({after, true, c});
-      uses_.push_back({before, false, c});
-    }
-    std::sort(uses_.begin(), uses_.end(), [](const EdgeUse& a, const EdgeUse& b) {
-      return a.other != b.other ? a.other < b.other : a.corner < b.corner;
-    });
-    for (std::size_t begin = 0, end = 0; begin < uses_.size(); begin = end) {
-      while (end < uses_.size() && uses_[end].other == uses_[begin].other) ++end;
-      join_across(mesh_.vertices[vertex], corners, std::span(uses_).subspan(begin, end - begin));
-    }
-    for (int c = 0; c < static_cast<int>(corners.size()); ++c) parent_[c] = root(c);
-    return parent_;
+void append(GouraudMesh& gouraud, const PatchMesh& mesh, std::span<const int> patches,
+            const SmoothFans& fans) {
+  const int offset = static_cast<int>(gouraud.vertices.size());
+  for (const int v : fans.vertices) gouraud.vertices.push_back(mesh.vertices[v]);
+  gouraud.normals.insert(gouraud.normals.end(), fans.normals.begin(), fans.normals.end());
+  for (std::size_t i = 0; i < patches.size(); ++i) {
+    auto& row = gouraud.corners[patches[i]];
+    for (int k = 0; k < count_corners(row); ++k) row[k] = offset + fans.corners[i][k];
   }
-
- private:
-  void join_across(const Vec3& vertex, std::span<const Corner> corners, std::span<const EdgeUse> uses) {
-    for (const EdgeUse& a : uses) {
-      if (!a.outwards) continue;
-      const EdgeUse* partner = only_partner(corners, uses, a);
-      if (partner == nullptr || only_partner(corners, uses, *partner) != &a) continue;
-      const int i = corners[a.corner].patch;
-      const int j = corners[partner->corner].patch;
-      const bool parted = std::any_of(uses.begin(), uses.end(), [&](const EdgeUse& use) {
-        const int k = corners[use.corner].patch;
-        return k != i && k != j && rises_from(vertex, i, k) && rises_from(vertex, j, k);
-      });
-      if (!parted) join(a.corner, partner->corner);
-    }
-  }
-
-  const EdgeUse* only_partner(std::span<const Corner> corners, std::span<const EdgeUse> uses,
-                              const EdgeUse& a) const {
-    const EdgeUse* partner = nullptr;
-    for (const EdgeUse& b : uses) {
-      if (b.outwards == a.outwards || !smooth(corners[a.corner].patch, corners[b.corner].patch)) continue;
-      if (partner != nullptr) return nullptr;
-      partner = &b;
-    }
-    return partner;
-  }
-
-  bool smooth(int i, int j) const {
-    return i != j && mesh_.materials[i] == mesh_.materials[j] &&
-           mesh_.normals[i].dot(mesh_.normals[j]) >= smooth_;
-  }
-
-  bool rises_from(const Vec3& vertex, int patch, int other) const {
-    const Vec3 d = mesh_.centroids[other] - vertex;
-    return d.dot(mesh_.normals[patch]) > rise * d.norm();
-  }
-
-  int root(int c) {
-    while (parent_[c] != c) c = parent_[c] = parent_[parent_[c]];
-    return c;
-  }
-
-  void join(int a, int b) {
-    a = root(a);
-    b = root(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
-  const PatchMesh& mesh_;
-  double smooth_;  // cosine of the crease angle
-  std::vector<int> parent_;
-  std::vector<EdgeUse> uses_;
-};
+}
 
 }  // namespace
 
@@ -111,31 +26,19 @@ GouraudMesh gouraud_mesh(const PatchMesh& mesh, double crease_angle) {
   if (!(crease_angle > 0 && crease_angle <= 180)) {
     throw std::invalid_argument("crease_angle must be in (0, 180] degrees");
   }
-  const VertexCorners corners_of(mesh.corners, static_cast<int>(mesh.vertices.size()));
+  Loops loops;
+  for (const auto& row : mesh.corners) {
+    loops.append(std::span(row).first(static_cast<std::size_t>(count_corners(row))));
+  }
+  const ManifoldParts parts =
+      find_manifold_parts(loops, EdgeTable(loops, static_cast<int>(mesh.vertices.size())));
+  std::vector<int> manifold, others;
+  for (int i = 0; i < mesh.size(); ++i) (parts.manifold[i] ? manifold : others).push_back(i);
+
   GouraudMesh gouraud;
   gouraud.corners = mesh.corners;
-  FanFinder fans(mesh, crease_angle);
-  std::vector<int> vertex_of_fan;
-  for (int v = 0; v < corners_of.vertex_count(); ++v) {
-    const std::span<const Corner> corners = corners_of[v];
-    const std::vector<int>& fan = fans.find(v, corners);
-    vertex_of_fan.assign(corners.size(), -1);
-    for (std::size_t c = 0; c < corners.size(); ++c) {
-      int& place = vertex_of_fan[fan[c]];
-      if (place < 0) {
-        place = static_cast<int>(gouraud.vertices.size());
-        gouraud.vertices.push_back(mesh.vertices[v]);
-        gouraud.normals.push_back(Vec3::Zero());
-      }
-      const auto [patch, corner] = corners[c];
-      const auto [before, after] = neighbours(mesh.corners[patch], corner);
-      const double angle =
-          angle_between(mesh.vertices[before] - mesh.vertices[v], mesh.vertices[after] - mesh.vertices[v]);
-      gouraud.normals[place] += angle * mesh.normals[patch];
-      gouraud.corners[patch][corner] = place;
-    }
-  }
-  for (Vec3& normal : gouraud.normals) normal.normalize();
+  append(gouraud, mesh, manifold, find_fans_on_half_edges(mesh, manifold, parts, loops, crease_angle));
+  append(gouraud, mesh, others, find_fans_by_index(mesh, others, crease_angle));
   return gouraud;
 }
 

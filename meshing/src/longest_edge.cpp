@@ -1,121 +1,63 @@
 #include "longest_edge.h"
 
 #include <algorithm>
-#include <cstdint>
 
-#include "edge_table.h"
+#include "edge_key.h"
 
 namespace luxel {
 
 namespace {
 
-std::uint64_t key(int a, int b) {
-  return static_cast<std::uint64_t>(std::min(a, b)) << 32 | static_cast<std::uint32_t>(std::max(a, b));
+std::size_t triangles_of(const std::vector<std::unique_ptr<SplitMesh>>& meshes) {
+  std::size_t total = 0;
+  for (const auto& mesh : meshes) total += static_cast<std::size_t>(mesh->triangle_count());
+  return total;
 }
 
 }  // namespace
 
 bool LongestEdgeRefiner::Entry::operator<(const Entry& other) const {
   if (squared_length != other.squared_length) return squared_length < other.squared_length;
-  return std::pair(from, to) > std::pair(other.from, other.to);
+  return ends > other.ends;
 }
 
-LongestEdgeRefiner::LongestEdgeRefiner(std::vector<Vec3>& vertices, std::vector<std::array<int, 3>> triangles,
-                                       std::vector<int> tags, const std::vector<std::array<int, 2>>& watched)
-    : vertices_(vertices),
-      triangles_(std::move(triangles)),
-      tags_(std::move(tags)),
-      initial_(triangles_.size()) {
-  for (const auto& [a, b] : watched) midpoints_.emplace(key(a, b), -1);
-  link_rings();
-  for (int h = 0; h < static_cast<int>(ring_.size()); ++h) push(h);
-}
-
-void LongestEdgeRefiner::link_rings() {
-  Loops loops;
-  for (const auto& triangle : triangles_) loops.append(triangle);
-  const EdgeTable edges(loops, static_cast<int>(vertices_.size()));
-  ring_.resize(loops.entries.size());
-  for (int e = 0; e < edges.edge_count(); ++e) {
-    const auto uses = edges.uses_of_edge(e);
-    for (std::size_t k = 0; k < uses.size(); ++k) ring_[uses[k]] = uses[(k + 1) % uses.size()];
+LongestEdgeRefiner::LongestEdgeRefiner(std::vector<Vec3>& vertices,
+                                       std::vector<std::unique_ptr<SplitMesh>> meshes,
+                                       const std::vector<std::array<int, 2>>& watched)
+    : vertices_(vertices), meshes_(std::move(meshes)), initial_(triangles_of(meshes_)) {
+  for (const auto& [a, b] : watched) midpoints_.emplace(edge_key(a, b), -1);
+  for (int i = 0; i < static_cast<int>(meshes_.size()); ++i) {
+    for (int e = 0; e < meshes_[i]->edge_count(); ++e) push(i, e);
   }
 }
 
-/// Queues an edge once: for the first half-edge of its ring in its smaller direction.
-void LongestEdgeRefiner::push(int h) {
-  for (int g = ring_[h]; g != h; g = ring_[g]) {
-    if (g < h) return;
-  }
-  queue_.push({(vertices_[to(h)] - vertices_[from(h)]).squaredNorm(), h, from(h), to(h)});
+void LongestEdgeRefiner::push(int mesh, int edge) {
+  auto [a, b] = meshes_[mesh]->ends(edge);
+  if (a > b) std::swap(a, b);
+  queue_.push({(vertices_[b] - vertices_[a]).squaredNorm(), {a, b}, mesh, edge});
 }
 
-void LongestEdgeRefiner::replace_in_ring(int old_half_edge, int new_half_edge) {
-  int before = old_half_edge;
-  while (ring_[before] != old_half_edge) before = ring_[before];
-  if (before == old_half_edge) {
-    ring_[new_half_edge] = new_half_edge;
-  } else {
-    ring_[new_half_edge] = ring_[old_half_edge];
-    ring_[before] = new_half_edge;
-  }
-}
-
-void LongestEdgeRefiner::split(int first) {
-  const int a = from(first);
-  const int b = to(first);
+void LongestEdgeRefiner::split(const Entry& longest) {
+  const auto [a, b] = longest.ends;
   const int m = static_cast<int>(vertices_.size());
   vertices_.push_back(0.5 * (vertices_[a] + vertices_[b]));
-  std::vector<int> ring;
-  int g = first;
-  do {
-    ring.push_back(g);
-    g = ring_[g];
-  } while (g != first);
-  if (const auto found = midpoints_.find(key(a, b)); found != midpoints_.end()) {
+  if (const auto found = midpoints_.find(edge_key(a, b)); found != midpoints_.end()) {
     found->second = m;
-    midpoints_.emplace(key(a, m), -1);
-    midpoints_.emplace(key(m, b), -1);
+    midpoints_.emplace(edge_key(a, m), -1);
+    midpoints_.emplace(edge_key(m, b), -1);
   }
-
-  std::vector<int> towards_a, towards_b, fresh;
-  for (const int h : ring) {
-    // Triangle (p, q, r) with the edge p -> q becomes (p, m, r) in place and (m, q, r) as a new one.
-    const int t = h / 3;
-    const int k = h % 3;
-    const int q = triangles_[t][(k + 1) % 3];
-    const int r = triangles_[t][(k + 2) % 3];
-    const int u = static_cast<int>(triangles_.size());
-    triangles_.push_back({m, q, r});
-    tags_.push_back(tags_[t]);
-    ring_.resize(ring_.size() + 3);
-    const int q_to_r = next(h);
-    replace_in_ring(q_to_r, 3 * u + 1);
-    triangles_[t][(k + 1) % 3] = m;
-    ring_[q_to_r] = 3 * u + 2;  // now m -> r, against r -> m of the new triangle
-    ring_[3 * u + 2] = q_to_r;
-    const bool forwards = from(h) == a;
-    (forwards ? towards_a : towards_b).push_back(h);
-    (forwards ? towards_b : towards_a).push_back(3 * u);
-    fresh.push_back(3 * u + 2);
-    // The old entry of q -> r names a half-edge that has moved: queue the edge under its new one.
-    queue_.push({(vertices_[r] - vertices_[q]).squaredNorm(), 3 * u + 1, q, r});
-  }
-  for (auto* half : {&towards_a, &towards_b}) {
-    for (std::size_t k = 0; k < half->size(); ++k) ring_[(*half)[k]] = (*half)[(k + 1) % half->size()];
-    fresh.push_back(*std::min_element(half->begin(), half->end()));
-  }
-  for (const int h : fresh)
-    queue_.push({(vertices_[to(h)] - vertices_[from(h)]).squaredNorm(), h, from(h), to(h)});
+  for (const int edge : meshes_[longest.mesh]->split(longest.edge, m)) push(longest.mesh, edge);
 }
 
 void LongestEdgeRefiner::refine(double longest) {
+  std::size_t count = triangles_of(meshes_);
   while (!queue_.empty() && queue_.top().squared_length > longest * longest) {
     const Entry entry = queue_.top();
     queue_.pop();
-    if (from(entry.half_edge) != entry.from || to(entry.half_edge) != entry.to) continue;
-    split(entry.half_edge);
-    history_.push_back({entry.squared_length, static_cast<double>(triangles_.size())});
+    count -= static_cast<std::size_t>(meshes_[entry.mesh]->triangle_count());
+    split(entry);
+    count += static_cast<std::size_t>(meshes_[entry.mesh]->triangle_count());
+    history_.push_back({entry.squared_length, static_cast<double>(count)});
   }
 }
 
@@ -125,8 +67,23 @@ std::size_t LongestEdgeRefiner::count(double longest) const {
   return after == history_.begin() ? initial_ : static_cast<std::size_t>((*(after - 1))[1]);
 }
 
+std::vector<std::array<int, 3>> LongestEdgeRefiner::triangles() const {
+  std::vector<std::array<int, 3>> all;
+  for (const auto& mesh : meshes_) {
+    const auto triangles = mesh->triangles();
+    all.insert(all.end(), triangles.begin(), triangles.end());
+  }
+  return all;
+}
+
+std::vector<int> LongestEdgeRefiner::tags() const {
+  std::vector<int> all;
+  for (const auto& mesh : meshes_) all.insert(all.end(), mesh->tags().begin(), mesh->tags().end());
+  return all;
+}
+
 std::optional<std::vector<int>> LongestEdgeRefiner::points_between(int a, int b) const {
-  const auto found = midpoints_.find(key(a, b));
+  const auto found = midpoints_.find(edge_key(a, b));
   if (found == midpoints_.end()) return std::nullopt;
   if (found->second < 0) return std::vector<int>();
   std::vector<int> points = *points_between(a, found->second);

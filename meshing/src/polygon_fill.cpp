@@ -54,15 +54,16 @@ double PolygonFiller::count(int p, double edge_length) const {
   return 2 * vertices - static_cast<double>(border_parts.size()) - twice_chi;
 }
 
-std::vector<std::array<int, 3>> PolygonFiller::fill(int p, double edge_length, std::vector<Vec3>& vertices) {
+PolygonDomain PolygonFiller::domain(int p, const std::vector<int>& inside,
+                                    const std::vector<Vec3>& vertices) {
   const Frame& frame = plan_.merged.polygons.frames[p];
   place_.resize(vertices.size(), -1);
-  PlanarDomain domain;
-  std::vector<int> members;
+  PolygonDomain result;
+  PlanarDomain& domain = result.domain;
   const auto place = [&](int v) {
     if (place_[v] < 0) {
-      place_[v] = static_cast<int>(members.size());
-      members.push_back(v);
+      place_[v] = static_cast<int>(result.vertices.size());
+      result.vertices.push_back(v);
       domain.points.push_back(frame.flat(vertices[v]));
     }
     return place_[v];
@@ -72,38 +73,55 @@ std::vector<std::array<int, 3>> PolygonFiller::fill(int p, double edge_length, s
     for (std::size_t k = 0; k + 1 < points.size(); ++k) {
       const int from = place(points[k]);
       list.push_back({from, place(points[k + 1])});
+      result.edges.push_back(plan_.edges.find(a, b));
     }
   };
   for (const auto& [a, b] : plan_.merged.polygons.border(p)) append(a, b, domain.borders);
   for (const auto& [a, b] : plan_.creases[p]) append(a, b, domain.creases);
+  for (const int v : result.vertices) place_[v] = -1;
+  for (const int v : inside) {
+    result.vertices.push_back(v);
+    domain.points.push_back(frame.flat(vertices[v]));
+  }
+  return result;
+}
 
+PolygonFill PolygonFiller::fill(int p, double edge_length, std::vector<Vec3>& vertices) {
+  const PlanarDomain outline = domain(p, {}, vertices).domain;
   const auto parts = [&](const std::vector<std::array<int, 2>>& list) {
     std::vector<Part> result;
     result.reserve(list.size());
-    for (const auto& [a, b] : list) result.push_back({domain.points[a], domain.points[b]});
+    for (const auto& [a, b] : list) result.push_back({outline.points[a], outline.points[b]});
     return result;
   };
-  const HexagonalLattice lattice(parts(domain.borders), parts(domain.creases), longest_side(p), edge_length);
+  const HexagonalLattice lattice(parts(outline.borders), parts(outline.creases), longest_side(p),
+                                 edge_length);
+  PolygonFill result{p, {}, {}};
   for (const Vec2& point : lattice.points()) {
-    members.push_back(static_cast<int>(vertices.size()));
-    domain.points.push_back(point);
-    vertices.push_back(frame.lift(point));
+    result.inside.push_back(static_cast<int>(vertices.size()));
+    vertices.push_back(plan_.merged.polygons.frames[p].lift(point));
   }
-  std::optional<std::vector<std::array<int, 3>>> triangles = triangulate(domain);
+  return refill(std::move(result), vertices);
+}
+
+PolygonFill PolygonFiller::refill(PolygonFill fill, const std::vector<Vec3>& vertices) {
+  PolygonDomain local = domain(fill.polygon, fill.inside, vertices);
+  std::optional<std::vector<std::array<int, 3>>> triangles = triangulate(local.domain);
   if (!triangles) {
     // Creases that meet at a very small angle can cross after rounding: the polygon is then filled without
     // them.
-    domain.creases.clear();
-    triangles = triangulate(domain);
+    local.domain.creases.clear();
+    triangles = triangulate(local.domain);
   }
-  for (const int v : members) {
-    if (v < static_cast<int>(place_.size())) place_[v] = -1;
+  if (!triangles) {
+    fill.triangles = plan_.merged.triangles[fill.polygon];
+    return fill;
   }
-  if (!triangles) return plan_.merged.triangles[p];
   for (auto& triangle : *triangles) {
-    for (int& corner : triangle) corner = members[corner];
+    for (int& corner : triangle) corner = local.vertices[corner];
   }
-  return *std::move(triangles);
+  fill.triangles = *std::move(triangles);
+  return fill;
 }
 
 }  // namespace luxel

@@ -2,8 +2,23 @@
 
 #include "lattice.h"
 #include "surface_plan.h"
+#include "triangulate.h"
 
 namespace luxel {
+
+/// A polygon cut into triangles.
+struct PolygonFill {
+  int polygon;
+  std::vector<int> inside;  ///< its vertices that lie on no edge of the plan
+  std::vector<std::array<int, 3>> triangles;
+};
+
+/// A polygon in its plane, with the points that its edges are divided by.
+struct PolygonDomain {
+  PlanarDomain domain;
+  std::vector<int> vertices;  ///< for each point of the domain
+  std::vector<int> edges;     ///< for each part of the borders, then of the creases, its edge in the plan
+};
 
 /// Fills the flat polygons of a plan with triangles.
 class PolygonFiller {
@@ -14,7 +29,12 @@ class PolygonFiller {
   double count(int p, double edge_length) const;
 
   /// Triangles over `vertices`, to which points inside are appended; the plan's edges are divided already.
-  std::vector<std::array<int, 3>> fill(int p, double edge_length, std::vector<Vec3>& vertices);
+  PolygonFill fill(int p, double edge_length, std::vector<Vec3>& vertices);
+
+  /// The same polygon cut anew, after points were added to its edges or inside.
+  PolygonFill refill(PolygonFill fill, const std::vector<Vec3>& vertices);
+
+  PolygonDomain domain(int p, const std::vector<int>& inside, const std::vector<Vec3>& vertices);
 
  private:
   using Part = std::array<Vec2, 2>;

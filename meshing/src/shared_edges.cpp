@@ -3,24 +3,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include "edge_key.h"
+
 namespace luxel {
 
-namespace {
-
-std::uint64_t key(int a, int b) {
-  return static_cast<std::uint64_t>(std::min(a, b)) << 32 | static_cast<std::uint32_t>(std::max(a, b));
-}
-
-}  // namespace
-
 int SharedEdges::add(int a, int b) {
-  const auto [found, fresh] = index_.try_emplace(key(a, b), size());
+  const auto [found, fresh] = index_.try_emplace(edge_key(a, b), size());
   if (fresh) ends_.push_back({std::min(a, b), std::max(a, b)});
   return found->second;
 }
 
 int SharedEdges::find(int a, int b) const {
-  const auto found = index_.find(key(a, b));
+  const auto found = index_.find(edge_key(a, b));
   return found == index_.end() ? -1 : found->second;
 }
 
@@ -31,10 +25,12 @@ int SharedEdges::parts(double length, double edge_length) {
 void SharedEdges::divide(std::vector<Vec3>& vertices, double edge_length,
                          const std::function<std::optional<std::vector<int>>(int, int)>& given) {
   between_.assign(ends_.size(), {});
+  given_.assign(ends_.size(), false);
   for (int e = 0; e < size(); ++e) {
     const auto [a, b] = ends_[e];
     if (auto points = given(a, b)) {
       between_[e] = *std::move(points);
+      given_[e] = true;
       continue;
     }
     const Vec3 start = vertices[a];
@@ -45,6 +41,16 @@ void SharedEdges::divide(std::vector<Vec3>& vertices, double edge_length,
       vertices.push_back(start + d * (static_cast<double>(k) / count));
     }
   }
+}
+
+void SharedEdges::insert(int edge, int a, int b, int m) {
+  auto& between = between_[edge];
+  if (a == ends_[edge][0] || b == ends_[edge][0]) {
+    between.insert(between.begin(), m);
+    return;
+  }
+  const auto first = std::find_if(between.begin(), between.end(), [&](int v) { return v == a || v == b; });
+  between.insert(first + 1, m);
 }
 
 std::vector<int> SharedEdges::points(int a, int b) const {

@@ -28,6 +28,12 @@ class SharedEdges {
   void divide(std::vector<Vec3>& vertices, double edge_length,
               const std::function<std::optional<std::vector<int>>(int, int)>& given);
 
+  /// Whether the points of an edge were given, after divide().
+  bool is_given(int edge) const { return given_[edge]; }
+
+  /// Puts the point m between a and b, which stand side by side on the edge.
+  void insert(int edge, int a, int b, int m);
+
   /// The points from a to b, both included, after divide().
   std::vector<int> points(int a, int b) const;
 
@@ -38,6 +44,7 @@ class SharedEdges {
   std::vector<std::array<int, 2>> ends_;
   std::unordered_map<std::uint64_t, int> index_;
   std::vector<std::vector<int>> between_;
+  std::vector<char> given_;
 };
 
 }  // namespace luxel

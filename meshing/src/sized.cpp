@@ -2,29 +2,36 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <limits>
 
+#include "angle.h"
 #include "face_locator.h"
-#include "longest_edge.h"
 #include "luxel/input_error.h"
 #include "patch_builder.h"
 #include "patch_limit.h"
-#include "polygon_fill.h"
-#include "surface_plan.h"
+#include "sized_mesher.h"
 #include "t_junctions.h"
 
 namespace luxel {
 
 namespace {
 
-// Longest edge of halved triangles, in edge lengths of the lattice, at which both have about the same area.
-constexpr double longest_of_halved = 1.5;
-
 // How near the number of patches must come to what is asked, relative; half of what is promised.
 constexpr double count_tolerance = 0.01;
 
 // Trials that the search for an edge length may take; the count is no smooth function of it for few patches.
 constexpr int trials = 12;
+
+// Angles that the fill shall not fall below [degrees], the widest first: narrower ones are taken where a
+// scene of narrow parts cannot have the wider ones with the patches asked for. Refinement is sure to end up
+// to 20.7 degrees and ends in practice up to about 30.
+constexpr std::array smallest_angles = {25.0, 20.0, 15.0, 10.0, 5.0, 0.0};
+
+// How near the number of patches of a finished fill must come, relative; what is promised; how many fills the
+// search may make for one angle.
+constexpr double fill_tolerance = 0.02;
+constexpr double promised_tolerance = 0.05;
+constexpr int fill_trials = 6;
 
 // Longest edge of a fill over its edge length, about: the first guess for patch_size.
 constexpr double longest_over_edge_length = 1.45;
@@ -40,77 +47,6 @@ double radiating_area(const Facets& facets) {
 double equilateral_edge(double area, double n) {
   return std::sqrt(4 * area / (std::sqrt(3.0) * n));
 }
-
-struct Filled {
-  std::vector<Vec3> vertices;
-  std::vector<std::array<int, 3>> triangles;
-  std::vector<int> polygons;
-};
-
-class SizedMesher {
- public:
-  SizedMesher(const Scene& scene, const Facets& facets, double guess, double crease_angle)
-      : facets_(facets), plan_(plan_surface(scene, facets, guess, crease_angle)) {}
-
-  /// How many patches an edge length gives, about.
-  double count(double edge_length) {
-    double total = 0;
-    const PolygonFiller filler(facets_.vertices, plan_);
-    for (const int p : plan_.filled) total += sides(p) * filler.count(p, edge_length);
-    if (!plan_.halved.empty()) total += count_halved(longest_of_halved * edge_length);
-    return total;
-  }
-
-  Filled fill(double edge_length, const Progress& progress) {
-    Filled result;
-    result.vertices = facets_.vertices;
-    LongestEdgeRefiner refiner(result.vertices, plan_.halved, plan_.polygon_of_halved, plan_.watched);
-    refiner.refine(longest_of_halved * edge_length);
-    plan_.edges.divide(result.vertices, edge_length,
-                       [&](int a, int b) { return refiner.points_between(a, b); });
-    PolygonFiller filler(facets_.vertices, plan_);
-    int done = 0;
-    for (const int p : plan_.filled) {
-      for (const auto& triangle : filler.fill(p, edge_length, result.vertices)) {
-        result.triangles.push_back(triangle);
-        result.polygons.push_back(p);
-      }
-      if (progress && !progress("meshing", ++done, static_cast<double>(plan_.filled.size())))
-        throw Cancelled();
-    }
-    result.triangles.insert(result.triangles.end(), refiner.triangles().begin(), refiner.triangles().end());
-    result.polygons.insert(result.polygons.end(), refiner.tags().begin(), refiner.tags().end());
-    return result;
-  }
-
-  const SurfacePlan& plan() const { return plan_; }
-
- private:
-  double sides(int p) const {
-    const int facet = plan_.merged.regions[p][0];
-    return facets_.front[facet] + facets_.back[facet];
-  }
-
-  double count_halved(double longest) {
-    if (!trial_ || longest < finest_) {
-      trial_vertices_ = facets_.vertices;
-      trial_.emplace(trial_vertices_, plan_.halved, plan_.polygon_of_halved, plan_.watched);
-      trial_->refine(longest);
-      finest_ = longest;
-      double weighted = 0;
-      for (const int p : trial_->tags()) weighted += sides(p);
-      sides_of_halved_ = weighted / static_cast<double>(trial_->tags().size());
-    }
-    return sides_of_halved_ * static_cast<double>(trial_->count(longest));
-  }
-
-  const Facets& facets_;
-  SurfacePlan plan_;
-  std::vector<Vec3> trial_vertices_;
-  std::optional<LongestEdgeRefiner> trial_;
-  double finest_ = 0;
-  double sides_of_halved_ = 1;
-};
 
 /// The edge length that gives about n patches.
 double find_edge_length(SizedMesher& mesher, double guess, double n) {
@@ -143,6 +79,68 @@ double longest_edge(const Filled& filled) {
     }
   }
   return std::sqrt(longest);
+}
+
+struct Sized {
+  Filled filled;
+  double edge_length = 0;
+  double error = std::numeric_limits<double>::infinity();  // of the count, relative
+};
+
+/// A fill of about n patches. What grading adds to it is known only once it is made: the search then aims
+/// that much lower.
+Sized fill_with_angle(SizedMesher& mesher, double guess, double n, double smallest_angle,
+                      const std::function<void(double)>& refuse, const Progress& progress) {
+  Sized best;
+  double edge_length = guess;
+  double aim = n;
+  for (int trial = 0; trial < fill_trials; ++trial) {
+    edge_length = find_edge_length(mesher, edge_length, aim);
+    refuse(mesher.count(edge_length));
+    Filled filled = mesher.fill(edge_length, smallest_angle, progress);
+    const double found = mesher.count(filled);
+    const bool again = filled.graded && filled.complete;
+    const double error = std::abs(found / n - 1);
+    if (error < best.error) best = {std::move(filled), edge_length, error};
+    if (error <= fill_tolerance || !again) break;
+    aim *= n / found;
+  }
+  return best;
+}
+
+/// A fill of about n patches with angles as wide as that allows.
+Sized fill_by_count(SizedMesher& mesher, double guess, double n, const std::function<void(double)>& refuse,
+                    const Progress& progress) {
+  Sized best;
+  for (const double angle : smallest_angles) {
+    if (!best.filled.complete && angle > 0) continue;
+    Sized sized = fill_with_angle(mesher, guess, n, angle / degrees_per_radian, refuse, progress);
+    const bool graded = sized.filled.graded;
+    if (sized.error < best.error || !best.filled.complete) best = std::move(sized);
+    if (best.filled.complete && (best.error <= promised_tolerance || !graded)) break;
+  }
+  return best;
+}
+
+/// A fill with no edge longer than `longest`.
+Sized fill_by_size(SizedMesher& mesher, double longest, const std::function<void(double)>& refuse,
+                   const Progress& progress) {
+  Sized sized;
+  sized.edge_length = longest / longest_over_edge_length;
+  double angle = smallest_angles.front() / degrees_per_radian;
+  for (int trial = 0; trial < trials; ++trial) {
+    refuse(mesher.count(sized.edge_length));
+    sized.filled = mesher.fill(sized.edge_length, angle, progress);
+    if (!sized.filled.complete) {
+      angle = 0;
+      sized.filled = mesher.fill(sized.edge_length, angle, progress);
+    }
+    const double found = longest_edge(sized.filled);
+    if (found <= longest) break;
+    // A hair less than what the ratio says, so that rounding does not ask for one more trial.
+    sized.edge_length *= 0.999 * longest / found;
+  }
+  return sized;
 }
 
 void append(PatchMesh& mesh, const Scene& scene, const Facets& facets, const MergedPolygons& merged,
@@ -183,27 +181,19 @@ void append_sized(PatchMesh& mesh, const Scene& scene, const Facets& facets,
   const double area = radiating_area(facets);
   const bool by_size = options.patch_size > 0;
   const int wanted = options.patches > 0 ? options.patches : MeshingOptions::default_patches;
-  double edge_length =
+  const double guess =
       by_size ? options.patch_size / longest_over_edge_length : equilateral_edge(area, wanted);
   // The smallest number that this size can give, before anything is made.
   const double at_least =
       by_size ? area / (std::sqrt(3.0) / 4 * options.patch_size * options.patch_size) : wanted;
-  refuse_too_many(scene, at_least, options.max_patches);
+  const auto refuse = [&](double count) { refuse_too_many(scene, count, options.max_patches); };
+  refuse(at_least);
 
-  SizedMesher mesher(scene, facets, edge_length, options.crease_angle);
-  if (!by_size) edge_length = find_edge_length(mesher, edge_length, wanted);
-  refuse_too_many(scene, mesher.count(edge_length), options.max_patches);
-  Filled filled = mesher.fill(edge_length, progress);
-  for (int trial = 0; by_size && trial < trials; ++trial) {
-    const double longest = longest_edge(filled);
-    if (longest <= options.patch_size) break;
-    // A hair less than what the ratio says, so that rounding does not ask for one more trial.
-    edge_length *= 0.999 * options.patch_size / longest;
-    refuse_too_many(scene, mesher.count(edge_length), options.max_patches);
-    filled = mesher.fill(edge_length, progress);
-  }
-  append(mesh, scene, facets, mesher.plan().merged, polygon_of_facet, filled);
-  mesh.report.edge_length = edge_length;
+  SizedMesher mesher(scene, facets, guess, options.crease_angle);
+  const Sized sized = by_size ? fill_by_size(mesher, options.patch_size, refuse, progress)
+                              : fill_by_count(mesher, guess, wanted, refuse, progress);
+  append(mesh, scene, facets, mesher.plan().merged, polygon_of_facet, sized.filled);
+  mesh.report.edge_length = sized.edge_length;
   mesh.report.imprinted_edges = mesher.plan().contact_edges;
 }
 

@@ -71,7 +71,7 @@ BadInput option(const std::string& what, std::vector<std::string> more, std::vec
 const std::vector<BadInput> command_lines = {
     {"NoCommand", "", "", {}, {"command"}},
     {"UnknownCommand", "", "", {"slove", "{}cube.obj"}, {"slove", "did you mean 'solve'"}},
-    {"CommandOfALaterVersion", "", "", {"stress"}, {"stress"}},
+    {"CommandOfALaterVersion", "", "", {"render"}, {"render"}},
     {"NoScene", "", "", {"solve"}, {"scene"}},
     {"TwoScenes", "", "", {"solve", "{}cube.obj", "{}cube.obj"}, {"unexpected"}},
     option("UnknownOption", {"--pathes", "100"}, {"--pathes", "did you mean '--patches'"}),

@@ -4,6 +4,8 @@
 
 #include "luxel/mesh_scene.h"
 #include "meshing/scenes.h"
+#include "smooth_fans.h"
+#include "vertex_corners.h"
 
 namespace luxel {
 namespace {
@@ -62,6 +64,18 @@ TEST(GouraudMesh, KeepsTheTwoSidesOfASheetApart) {
   EXPECT_EQ(gouraud.vertices.size(), 12u);  // six on each side
 }
 
+TEST(GouraudMesh, HoldsASingleTwoSidedPatch) {
+  SceneMaker sheet;  // front and back: each edge has two patches that run in opposite directions
+  sheet.face({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, sheet.add_finish({.two_sided = true}));
+  const PatchMesh mesh = mesh_scene(sheet.scene(), as_is);
+
+  testing::internal::CaptureStderr();
+  const GouraudMesh gouraud = gouraud_mesh(mesh);
+
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  EXPECT_EQ(gouraud.vertices.size(), 8u);
+}
+
 TEST(GouraudMesh, SplitsTheFloorWhereAWallStandsOnIt) {
   SceneMaker maker = grid(1);
   maker.face({{1, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}});
@@ -86,6 +100,48 @@ TEST(GouraudMesh, TurnsNormalsWithACurvedSurface) {
   for (std::size_t v = 0; v < gouraud.vertices.size(); ++v) {
     const Vec3 radius(gouraud.vertices[v].x(), gouraud.vertices[v].y(), 0);
     EXPECT_TRUE(gouraud.normals[v].isApprox(radius, 1e-12));
+  }
+}
+
+TEST(GouraudMesh, FindsTheSameFansOnHalfEdgesAndByIndex) {
+  SceneMaker maker;  // a prism of 24 sides with one end, and a sheet of two materials
+  constexpr int sides = 24;
+  const auto rim = [](int k, double z) {
+    return Vec3(std::cos(2 * M_PI * k / sides), std::sin(2 * M_PI * k / sides), z);
+  };
+  for (int k = 0; k < sides; ++k) {
+    maker.face({rim(k, 0), rim(k + 1, 0), rim(k + 1, 1), rim(k, 1)});
+    maker.face({rim(k, 1), rim(k + 1, 1), {0, 0, 1.2}});
+  }
+  const int other = maker.add_finish({.reflectance = Rgb::Constant(0.1)});
+  for (double x = 3; x < 6; ++x) {
+    maker.face({{x, 0, 0}, {x + 1, 0, 0}, {x + 1, 1, 0}, {x, 1, 0}}, x < 5 ? 0 : other);
+  }
+  const PatchMesh mesh = mesh_scene(maker.scene(), as_is);
+  Loops loops;
+  for (const auto& row : mesh.corners) loops.append(std::span(row).first(count_corners(row)));
+  const ManifoldParts parts =
+      find_manifold_parts(loops, EdgeTable(loops, static_cast<int>(mesh.vertices.size())));
+  std::vector<int> all(mesh.size());
+  for (int i = 0; i < mesh.size(); ++i) all[i] = i;
+
+  for (const double crease_angle : {10.0, 30.0, 120.0}) {
+    const SmoothFans half_edges = find_fans_on_half_edges(mesh, all, parts, loops, crease_angle);
+    const SmoothFans index = find_fans_by_index(mesh, all, crease_angle);
+
+    ASSERT_EQ(half_edges.vertices.size(), index.vertices.size());
+    std::vector<int> fan_by_index(index.vertices.size(), -1);
+    for (int i = 0; i < mesh.size(); ++i) {
+      for (int k = 0; k < mesh.corner_count(i); ++k) {
+        const int a = half_edges.corners[i][k];
+        const int b = index.corners[i][k];
+        if (fan_by_index[a] < 0) fan_by_index[a] = b;
+        EXPECT_EQ(fan_by_index[a], b);
+        EXPECT_EQ(half_edges.vertices[a], index.vertices[b]);
+        // OpenMesh takes angles from arc cosines: right to 1e-15 for the angles here
+        EXPECT_TRUE(half_edges.normals[a].isApprox(index.normals[b], 1e-13));
+      }
+    }
   }
 }
 

@@ -154,6 +154,49 @@ TEST(SizedMesh, CutsTheFootprintOfABlockIntoTheFloor) {
 }
 #endif
 
+#ifdef LUXEL_WITH_CGAL
+/// A unit cube, in it a sheet with a square pane of 0.02 and, 0.01 beside it, one of 0.01 x 0.6.
+Scene cube_with_narrow_parts() {
+  SceneMaker maker = SceneMaker().room({0, 0, 0}, {1, 1, 1});
+  const int glass = maker.add_finish({.reflectance = Rgb::Constant(0.1)});
+  maker.face({{0.5, 0.5, 0.3}, {0.52, 0.5, 0.3}, {0.52, 0.52, 0.3}, {0.5, 0.52, 0.3}}, glass);
+  maker.face({{0.53, 0.2, 0.3}, {0.54, 0.2, 0.3}, {0.54, 0.8, 0.3}, {0.53, 0.8, 0.3}}, glass);
+  const double x[] = {0.2, 0.5, 0.52, 0.53, 0.54, 0.8};
+  const double y[] = {0.2, 0.5, 0.52, 0.8};
+  for (int i = 0; i < 5; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      if (i == 3 || (i == 1 && j == 1)) continue;
+      maker.face(
+          {{x[i], y[j], 0.3}, {x[i + 1], y[j], 0.3}, {x[i + 1], y[j + 1], 0.3}, {x[i], y[j + 1], 0.3}});
+    }
+  }
+  return maker.scene();
+}
+
+TEST(SizedMesh, GradesEdgesInNarrowParts) {
+  const Scene scene = cube_with_narrow_parts();
+
+  for (const int wanted : {1500, 5000, 20000}) {
+    const PatchMesh mesh = mesh_scene(scene, {.patches = wanted});
+
+    EXPECT_NEAR(mesh.size(), wanted, count_tolerance * wanted);
+    EXPECT_GE(mesh.report.min_angle, smallest_angle);
+    EXPECT_LE(mesh.report.area_error, 1e-12);
+    EXPECT_EQ(mesh.report.remaining_t_vertices, 0);
+    EXPECT_EQ(geometry_hash(mesh), geometry_hash(mesh_scene(scene, {.patches = wanted})));
+  }
+}
+
+TEST(SizedMesh, GivesUpOnAnglesThatTakeTooManyPatches) {
+  SceneMaker maker;  // two needles with corners of 0.006 degrees
+  maker.face({{0, 0, 0}, {1, 0, 0}, {1, 1e-4, 0}}).face({{0, 0, 1}, {1, 0, 1}, {1, 1e-4, 1}});
+
+  const PatchMesh mesh = mesh_scene(maker.scene(), {.patches = 1000});
+
+  EXPECT_NEAR(mesh.size(), 1000, count_tolerance * 1000);
+}
+#endif
+
 TEST(SizedMesh, KeepsBordersOfMaterials) {
   SceneMaker maker;
   const int other = maker.add_finish({.reflectance = Rgb::Constant(0.1)});

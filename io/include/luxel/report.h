@@ -88,6 +88,12 @@ struct Report {
     std::string saved;
   };
 
+  /// What solving the scene will take, foretold.
+  struct Estimate {
+    double cpu_seconds = 0;
+    std::uint64_t bytes = 0;  ///< at the peak, the program itself included
+  };
+
   /// Form factors between groups: F_IJ = sum over i in I, j in J of A_i F_ij / A_I.
   struct GroupFactors {
     std::vector<std::string> groups;
@@ -116,6 +122,7 @@ struct Report {
   std::optional<GroupFactors> group_factors;
   std::optional<PointFactors> point_factors;  ///< "point" in JSON
   std::vector<LeftOut> left_out;
+  std::optional<Estimate> estimate;
   double cpu_seconds = 0;  ///< user + system of the process
   double wall_seconds = 0;
   std::uint64_t peak_bytes = 0;

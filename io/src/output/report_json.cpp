@@ -138,6 +138,10 @@ std::string to_json(const Report& report) {
   for (const Report::LeftOut& item : report.left_out) {
     document["left_out"].push_back({{"what", item.what}, {"why", item.why}, {"saved", item.saved}});
   }
+  if (report.estimate) {
+    document["estimate"] = {{"cpu_seconds", number(report.estimate->cpu_seconds)},
+                            {"bytes", report.estimate->bytes}};
+  }
   document["cpu_seconds"] = number(report.cpu_seconds);
   document["wall_seconds"] = number(report.wall_seconds);
   document["peak_bytes"] = report.peak_bytes;

@@ -33,8 +33,15 @@ struct ClosureReport {
   double largest_correction = 0;  ///< largest |factor - 1| that any entry was multiplied by
   bool applied = false;  ///< some enclosure was scaled; false for open scenes: their missing share is sky
   int iterations = 0;    ///< Newton steps
+  int unclosed = -1;     ///< a patch of the enclosure that could not be closed; -1: none such
   std::string message;   ///< one sentence: which enclosure could not be closed; else empty
 };
+
+/// Row sums s_i = sum_j A_i F_ij / A_i of stored exchange areas, in float64. Cost: one pass.
+std::vector<double> row_sums(const ExchangeMatrix& exchange_areas, std::span<const double> areas);
+
+/// The sentence of ClosureReport::message for the enclosure of this patch.
+std::string unclosed_message(int patch);
 
 /// F from stored exchange areas. Symmetric; has entries().
 class DenseOperator : public TransportOperator {

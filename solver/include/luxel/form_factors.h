@@ -21,6 +21,7 @@ struct FormFactorOptions {
   Visibility visibility = Visibility::automatic;
   Precision precision = Precision::float32;  ///< of the stored entries; they are computed in float64
   std::uint64_t seed = 1;                    ///< of the rays' random streams
+  bool keep_idle_occluders = false;  ///< look at those too that can hide nothing: as right, and slower
 };
 
 /// What the assembly did, pair by pair, and what it may be wrong by.

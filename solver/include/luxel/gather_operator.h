@@ -9,7 +9,6 @@
 #include <string_view>
 #include <vector>
 
-#include "luxel/enclosures.h"
 #include "luxel/patch_mesh.h"
 #include "luxel/progress.h"
 #include "luxel/ray_scene.h"
@@ -22,12 +21,12 @@ namespace luxel {
 /// How the irradiance is gathered by rays. The door for most users is solve_gathered().
 struct GatherOptions {
   double accuracy = 0.01;  ///< asked relative RMS error of single patches' irradiance, in (0, 1); sets `rays`
-  std::optional<int> rays;  ///< rays from each patch, >= 16; overrides `accuracy`
-  std::optional<int>
-      stored_rays;  ///< of these kept to iterate on, >= 16; by default a quarter, see gather_plan
-  std::optional<int> shadow_rays;  ///< from a patch to a lamp that it sees in part, >= 16
-  bool fit = true;                 ///< smooth the noise between neighbours on one plane where they agree
-  std::uint64_t seed = 0;          ///< another seed, another sample of the same error
+  std::optional<int> rays = {};  ///< rays from each patch, >= 16; overrides `accuracy`
+  std::optional<int> stored_rays =
+      {};  ///< of these kept to iterate on, >= 16; by default a quarter, see gather_plan
+  std::optional<int> shadow_rays = {};  ///< from a patch to a lamp that it sees in part, >= 16
+  bool fit = true;                      ///< smooth the noise between neighbours on one plane where they agree
+  std::uint64_t seed = 0;               ///< another seed, another sample of the same error
 };
 
 /// What solve_gathered() will do for a mesh.
@@ -85,7 +84,6 @@ class GatherOperator : public TransportOperator {
 /// @throws std::invalid_argument for options out of range or a mesh that does not belong to the others;
 /// Cancelled
 std::unique_ptr<GatherOperator> gather_operator(const PatchMesh& mesh, const RayScene& occluders,
-                                                const Enclosures& enclosures,
                                                 const GatherOptions& options = {},
                                                 const Progress& progress = {});
 
@@ -128,13 +126,12 @@ struct GatheredSolution {
 /// much of the surface they are met by the rays instead. The same input and seed give the same bits for any
 /// number of threads.
 /// Cost: 30 to 50 ns of CPU a ray on merged polygons, 100 to 200 on a million triangles.
-/// @param enclosures  of this mesh: in closed ones no ray is lost
 /// @param solving     method, bounces and callbacks of the iteration on U; its tolerance is raised to a
 /// hundredth of the accuracy, since less is lost in the sampling
 /// @throws SingularSystem; std::invalid_argument; Cancelled
 GatheredSolution solve_gathered(const PatchMesh& mesh, const RayScene& occluders,
-                                const Enclosures& enclosures, const PatchField& reflectance,
-                                const PatchField& emission, const GatherOptions& options = {},
-                                const SolveOptions& solving = {}, const Progress& progress = {});
+                                const PatchField& reflectance, const PatchField& emission,
+                                const GatherOptions& options = {}, const SolveOptions& solving = {},
+                                const Progress& progress = {});
 
 }  // namespace luxel

@@ -88,7 +88,15 @@ struct RadiositySolution {
 /// fix the level). The message names the enclosure by its first patch.
 class SingularSystem : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  SingularSystem(int patch, int channel, bool emits);
+
+  int patch() const { return patch_; }      ///< the first of the enclosure
+  int channel() const { return channel_; }  ///< in which nothing is lost
+  bool emits() const { return emits_; }     ///< the enclosure has emission in that channel
+
+ private:
+  int patch_, channel_;
+  bool emits_;
 };
 
 /// Solves B = E + rho F B for m channels at once.

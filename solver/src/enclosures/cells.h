@@ -32,4 +32,7 @@ Cells find_cells(const TriangleSoup& soup, const Shells& shells, const std::vect
 /// For each side of a triangle of the occluders whether patches cover it wholly: by the areas of its polygon.
 std::vector<char> lit_sides(const PatchMesh& mesh);
 
+/// The cell that each patch looks into; -1 where its polygon's side bounds several.
+std::vector<int> cells_of_patches(const PatchMesh& mesh, const Cells& cells);
+
 }  // namespace luxel

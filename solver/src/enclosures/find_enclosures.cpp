@@ -77,31 +77,6 @@ std::vector<Met> look_around(const PatchMesh& mesh, const RayScene& occluders, c
   return met;
 }
 
-/// The cell that each patch looks into; -1 where its polygon's side bounds several.
-std::vector<int> cells_of_patches(const PatchMesh& mesh, const Cells& cells) {
-  const Occluders& occluders = mesh.occluders;
-  constexpr int none = -2, several = -1;
-  std::vector<std::array<int, 2>> of_polygon(occluders.polygon_count, {none, none});
-  std::vector<Vec3> normals(occluders.polygon_count, Vec3::Zero());
-  for (std::size_t t = 0; t < occluders.triangles.size(); ++t) {
-    const int p = occluders.polygons[t];
-    const auto& [a, b, c] = occluders.triangles[t];
-    const Vec3& origin = occluders.vertices[a];
-    normals[p] += (occluders.vertices[b] - origin).cross(occluders.vertices[c] - origin);
-    for (int side = 0; side < 2; ++side) {
-      int& known = of_polygon[p][side];
-      const int cell = cells.cell[2 * t + side];
-      known = known == none || known == cell ? cell : several;
-    }
-  }
-  std::vector<int> result(mesh.size());
-  for (int i = 0; i < mesh.size(); ++i) {
-    const int p = mesh.polygons[i];
-    result[i] = std::max(several, of_polygon[p][mesh.normals[i].dot(normals[p]) > 0 ? 0 : 1]);
-  }
-  return result;
-}
-
 // Variance of a share p over p (1 - p) rays^(-2 order), measured at the mouth of the Cornell box.
 constexpr double usual_variance = 0.36;
 

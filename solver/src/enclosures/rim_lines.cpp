@@ -24,7 +24,12 @@ constexpr double share_of_rim = 0.3;
 // that fills a crack, or that the rim stands on, is met within.
 constexpr double run_up = 1e-5;
 
+// A ray that leaves a sheet over its rim keeps this far above it, in working units, of which RayScene adds
+// 2e-7 itself: over cracks that count as touching (4e-7), and below a sheet that leaves a slit of 7e-7 to it.
+constexpr double height_over_sheet = 3e-7;
+
 constexpr int directions_a_point = 16;
+constexpr int places_over_a_rim = 4;
 constexpr std::uint64_t rim_stream = 0x72696d206c696e65;
 
 class Looker {
@@ -41,6 +46,22 @@ class Looker {
       sets_.join(ahead, behind);
     } else if (ahead >= 0 || behind >= 0) {
       std::atomic_ref(leaks_[std::max(ahead, behind)]).store(1, std::memory_order_relaxed);
+    }
+  }
+
+  /// Looks from a side of a sheet out over its rim: what the light in a slit beside the rim meets there.
+  void look_over(int triangle, const Vec3& point, const Vec3& normal, const Vec3& off, bool front) {
+    const int patch = locator_.patch_at(triangle, front, world(point));
+    if (patch < 0) return;
+    const Vec3 origin = world(point + height_over_sheet * normal);
+    RayScene::Hit hit;
+    scene_.intersect({&origin, 1}, {&normal, 1}, {&off, 1}, {&hit, 1}, RayScene::Look::once);
+    const int seen =
+        hit.primitive < 0 ? -1 : locator_.patch_at(hit.primitive, hit.front, origin + hit.distance * off);
+    if (seen >= 0) {
+      sets_.join(patch, seen);
+    } else {
+      std::atomic_ref(leaks_[patch]).store(1, std::memory_order_relaxed);
     }
   }
 
@@ -91,6 +112,11 @@ std::vector<char> look_through_rims(const PatchMesh& mesh, const TriangleSoup& s
       if (!(length > 0)) continue;
       // counter-clockwise, the sheet lies left of the edge
       const Vec3 along = (to - from) / length, off = along.cross(normal);
+      for (int k = 0; k < places_over_a_rim; ++k) {
+        const Vec3 inside = from + (k + 0.5) / places_over_a_rim * length * along - 2 * hair * off;
+        looker.look_over(rim.triangle, inside, normal, off, true);
+        looker.look_over(rim.triangle, inside, -normal, off, false);
+      }
       const OwenSobol4 sequence(mixed_seed(rim_stream, r));
       for (int k = 0; k < directions_a_point; ++k) {
         const auto [place, height, azimuth, unused] = sequence(k);

@@ -62,7 +62,7 @@ OccluderFace occluder_face(const Polygon& outline, const Plane& plane, int polyg
   return face;
 }
 
-OccluderSet occluder_set(const PatchMesh& mesh, const ClusterTree& tree) {
+OccluderSet occluder_set(const PatchMesh& mesh, const ClusterTree& tree, bool keep_idle) {
   std::vector<Vec3> vertices;
   vertices.reserve(mesh.occluders.vertices.size());
   for (const Vec3& x : mesh.occluders.vertices) vertices.push_back((x - tree.centre) * tree.scale);
@@ -82,6 +82,7 @@ OccluderSet occluder_set(const PatchMesh& mesh, const ClusterTree& tree) {
     }
   }
   set.occluders = join_bodies(set.faces, tree, mesh);
+  if (keep_idle) return set;
   std::erase_if(set.occluders, [&](const Occluder& occluder) {
     return !occluder.body() && !splits(set.faces[occluder.begin].plane, corners);
   });

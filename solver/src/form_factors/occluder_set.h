@@ -56,7 +56,8 @@ struct OccluderSet {
 /// The occluders of a mesh: its flat polygons in convex pieces of at most eight corners, without those that
 /// have nothing behind or nothing in front of them; closed convex bodies as one. Cost: faces times vertices
 /// at worst, early exits in practice.
-OccluderSet occluder_set(const PatchMesh& mesh, const ClusterTree& tree);
+/// @param keep_idle  also those that have nothing on one side
+OccluderSet occluder_set(const PatchMesh& mesh, const ClusterTree& tree, bool keep_idle = false);
 
 /// A face of the outline with its sides and its sphere.
 OccluderFace occluder_face(const Polygon& outline, const Plane& plane, int polygon);

@@ -29,7 +29,7 @@ constexpr double error_order = 0.7;
 
 // Most pairs that come to rays are wholly visible or wholly hidden after all: the share of a pair has the
 // distribution Beta(prior, prior) before any ray is cast.
-constexpr double prior = 0.2;
+constexpr double prior = 0.15;
 
 // Powers of 1 / g, g the real root of x^5 = x + 1: the additive recurrence of lowest discrepancy known in
 // four dimensions (Roberts 2018).

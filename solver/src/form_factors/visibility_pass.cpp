@@ -26,12 +26,17 @@ constexpr double pair_share = 0.3;
 
 // Rays err independently, clipping does not: their share is larger, such that the largest of 10,000 rows
 // (four standard deviations) stays below 2 A.
-constexpr double ray_share = 0.75;
+constexpr double ray_share = 0.7;
 
-// Rays decide on pairs with more occluders in between than this, where their tolerance is at least `coarse`
-// of the pair: clipping costs about 3 us and grows with the square of the occluders, a ray costs 60 ns.
+// Up to so many occluders between a pair, clipping is always the cheaper way.
 constexpr std::size_t few_occluders = 6;
-constexpr double coarse = 0.01;
+
+// Costs [us], measured: a pair clipped against k occluders takes clip_cost + clip_growth k^2, a ray ray_cost;
+// rays for a relative tolerance t are about (ray_need / t)^(1 / 0.7).
+constexpr double clip_cost = 3, clip_growth = 0.3, ray_cost = 0.06, ray_need = 0.4;
+
+// In a block that rays decide as a whole, pairs with a smaller relative tolerance are looked at one by one.
+constexpr double coarse = 0.02;
 
 // Blocks of so many patches a side, or fewer, are handed to rays as a whole.
 constexpr int ray_block = 16;
@@ -224,9 +229,10 @@ class VisibilityPass {
     const double exchange = unhidden(s, t);
     if (!(exchange > 0)) return;
     const double allowed = tolerance(s, t, exchange);
-    if (options_.visibility == Visibility::rays || allowed > coarse * exchange) {
+    const double for_rays = allowed * (ray_share / pair_share);
+    if (options_.visibility == Visibility::rays || for_rays > coarse * exchange) {
       ++work.tally.partial;
-      work.rays.push_back({s, t, exchange, allowed * (ray_share / pair_share)});
+      work.rays.push_back({s, t, exchange, for_rays});
       return;
     }
     const int a = leaf_[s], b = leaf_[t];
@@ -238,16 +244,22 @@ class VisibilityPass {
     }
   }
 
+  static bool rays_are_cheaper(std::size_t occluders, double relative_tolerance) {
+    if (occluders <= few_occluders) return false;
+    const double k = static_cast<double>(occluders);
+    return ray_cost * std::pow(ray_need / relative_tolerance, 1 / 0.7) < clip_cost + clip_growth * k * k;
+  }
+
   void pair(int s, int t, const std::vector<Candidate>& candidates, HiddenPair& clip, BlockWork& work) {
     const double exchange = unhidden(s, t);
     if (!(exchange > 0)) return;
     ++work.tally.partial;
     const double allowed = tolerance(s, t, exchange);
-    const bool sample = options_.visibility == Visibility::rays ||
-                        (options_.visibility == Visibility::automatic && candidates.size() > few_occluders &&
-                         allowed > coarse * exchange);
-    if (sample) {
-      work.rays.push_back({s, t, exchange, allowed * (ray_share / pair_share)});
+    const double for_rays = allowed * (ray_share / pair_share);
+    if (options_.visibility == Visibility::rays ||
+        (options_.visibility == Visibility::automatic &&
+         rays_are_cheaper(candidates.size(), for_rays / exchange))) {
+      work.rays.push_back({s, t, exchange, for_rays});
       return;
     }
     const HiddenPart part = clip(s, t, candidates, exchange, allowed);
@@ -276,7 +288,7 @@ class VisibilityPass {
 
 void subtract_hidden(const PatchMesh& mesh, const ClusterTree& tree, const FormFactorOptions& options,
                      ExchangeMatrix& exchange_areas, FormFactorReport& report, const Progress& progress) {
-  const OccluderSet set = occluder_set(mesh, tree);
+  const OccluderSet set = occluder_set(mesh, tree, options.keep_idle_occluders);
   for (const Occluder& occluder : set.occluders) report.occluders += occluder.face_count();
   if (set.occluders.empty()) return;
   const Tally tally = VisibilityPass(mesh, tree, set, options, exchange_areas).run(progress);

@@ -20,6 +20,11 @@ constexpr double growth_of_divergence = 1e6;
 // Conjugate gradients stay within a few dozen iterations of their best residual as long as they get on.
 constexpr int window_of_stagnation = 50;
 
+// A residual, or the power left in it, that has fallen so many times in a row gets on, however slowly and
+// however high a hump it had to climb at first (Gauss-Seidel near reflectance 1); the noise of rounding falls
+// as often by chance once in 2^25 iterations.
+constexpr int falls_of_progress = 25;
+
 // The residual of a B rounded to float64 stays above about u ||B||; within a hundred times that, sums of many
 // numbers may rise and fall at will.
 constexpr double unit_roundoff = 0x1p-53;
@@ -85,6 +90,8 @@ bool IterationWatch::next(const PatchField& residual, const PatchField& radiosit
   iteration.relative_residual = system_->relative_norms(residual).maxCoeff();
   iteration.error_bound = bound_of(residual, radiosity);
   iteration.radiosity = &radiosity;
+  // the power on its way: shooting lowers it at every step, while the norm may rise where it gathers
+  count_falls(area_sums(system_->areas(), residual).maxCoeff());
   if (!record(iteration) || !progress(iteration)) return false;
   if (!expects_decrease_ || !power_rises(residual, radiosity)) return true;
   return stop(Stopped::diverged,
@@ -96,6 +103,7 @@ bool IterationWatch::next(const Eigen::RowVectorXd& relative_norms) {
   Iteration iteration;
   iteration.number = ++report_->iterations;
   iteration.relative_residual = relative_norms.maxCoeff();
+  count_falls(iteration.relative_residual);
   return record(iteration) && progress(iteration);
 }
 
@@ -137,6 +145,11 @@ bool IterationWatch::power_rises(const PatchField& residual, const PatchField& r
   return (rises_.array() >= rises_of_divergence && power.array() > floor.array()).any();
 }
 
+void IterationWatch::count_falls(double measure) {
+  falls_ = measure < last_ ? falls_ + 1 : 0;
+  last_ = measure;
+}
+
 bool IterationWatch::progress(const Iteration& iteration) {
   const double residual = iteration.relative_residual;
   const std::string at = " at iteration " + std::to_string(iteration.number);
@@ -148,7 +161,7 @@ bool IterationWatch::progress(const Iteration& iteration) {
   }
   since_best_ = residual < best_ ? 0 : since_best_ + 1;
   best_ = std::min(best_, residual);
-  if (since_best_ >= window_of_stagnation) {
+  if (since_best_ >= window_of_stagnation && falls_ < falls_of_progress) {
     std::ostringstream why;
     why << "no progress over " << window_of_stagnation << " iterations" << at
         << ", below a relative residual of " << best_;

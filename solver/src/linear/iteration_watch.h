@@ -43,6 +43,7 @@ class IterationWatch {
   double bound_of(const PatchField& residual, const PatchField& radiosity) const;
   bool holds(const Iteration& iteration, double margin) const;
   bool record(Iteration iteration);
+  void count_falls(double measure);
   bool progress(const Iteration& iteration);
   bool power_rises(const PatchField& residual, const PatchField& radiosity);
   std::string row_gain() const;
@@ -55,6 +56,8 @@ class IterationWatch {
   double margin_ = 1;
   double best_ = std::numeric_limits<double>::infinity();
   int since_best_ = 0;
+  double last_ = std::numeric_limits<double>::infinity();
+  int falls_ = 0;             // of the residual, in a row
   Eigen::RowVectorXd power_;  ///< of the last residual, each channel
   Eigen::RowVectorXi rises_;  ///< in a row, each channel
 };

@@ -23,17 +23,24 @@ PatchField spread(const RadiositySystem& system, PatchField marked) {
   return marked;
 }
 
-std::string describe(const RadiositySystem& system, Eigen::Index patch, Eigen::Index channel) {
+SingularSystem refusal(const RadiositySystem& system, Eigen::Index patch, Eigen::Index channel) {
   PatchField mark = PatchField::Zero(system.size(), 1);
   mark(patch, 0) = 1;
   const PatchField enclosure = spread(system, mark);
   const bool emits = (enclosure.col(0).array() * system.emission().col(channel).array() > 0).any();
-  return "the system is singular: the enclosure of patch " + std::to_string(patch) +
-         " is closed and reflects everything (channel " + std::to_string(channel) + "), so that its " +
-         (emits ? "emission can never be absorbed" : "radiosity is not unique");
+  return {static_cast<int>(patch), static_cast<int>(channel), emits};
 }
 
 }  // namespace
+
+SingularSystem::SingularSystem(int patch, int channel, bool emits)
+    : std::runtime_error("the system is singular: the enclosure of patch " + std::to_string(patch) +
+                         " is closed and reflects everything (channel " + std::to_string(channel) +
+                         "), so that its " +
+                         (emits ? "emission can never be absorbed" : "radiosity is not unique")),
+      patch_(patch),
+      channel_(channel),
+      emits_(emits) {}
 
 void refuse_singular(const RadiositySystem& system) {
   for (Eigen::Index c = 0; c < system.columns(); ++c) {
@@ -42,7 +49,7 @@ void refuse_singular(const RadiositySystem& system) {
     const PatchField losing = (loss.abs() > smallest_loss).cast<double>().matrix();
     const PatchField regular = spread(system, losing);
     for (Eigen::Index i = 0; i < system.size(); ++i) {
-      if (regular(i, 0) == 0) throw SingularSystem(describe(system, i, c));
+      if (regular(i, 0) == 0) throw refusal(system, i, c);
     }
   }
 }

@@ -6,6 +6,8 @@
 
 #include "linear/methods.h"
 #include "linear/singular.h"
+#include "luxel/exchange_matrix.h"
+#include "plan/cost_model.h"
 
 namespace luxel {
 
@@ -15,14 +17,9 @@ namespace {
 // repair.
 constexpr int fresh_starts = 4;
 
-// A factorisation costs as much as conjugate gradients for about N / 200 columns of one reflectance (N =
-// 4,704: 24 columns at reflectance 0.8, fewer above; docs/decisions/0009-solvers.md), and never pays for a
-// channel or three.
-constexpr Eigen::Index patches_per_column = 200;
-constexpr Eigen::Index least_columns_for_cholesky = 10;
-
-// Beyond this its N^2 / 2 float32 numbers are 0.5 GB, and it would take hundreds of columns to pay.
-constexpr Eigen::Index size_for_cholesky = 16'000;
+// Rounding and the residual asked may leave a B that should be 0 this far below it, as a share of the largest
+// B.
+constexpr double rounding_of_radiosity = 1e-6;
 
 void require(bool holds, const std::string& message) {
   if (!holds) throw std::invalid_argument("solve: " + message);
@@ -46,17 +43,26 @@ void check(const TransportOperator& transport, const PatchField& reflectance, co
   require(!options.bounces || *options.bounces >= 0, "bounces must be 0 or more");
 }
 
+SolveShape shape(const RadiositySystem& system, const SolveOptions& options) {
+  SolveShape shape;
+  shape.patches = static_cast<double>(system.size());
+  const Eigen::RowVectorXd mean = system.areas().transpose() * system.reflectance() / system.areas().sum();
+  for (const auto& group : system.groups_of_equal_reflectance()) {
+    shape.columns.push_back(static_cast<int>(group.size()));
+    shape.mean_reflectance = std::max(shape.mean_reflectance, mean[group.front()]);
+  }
+  if (system.reflectance().size() > 0) shape.largest_reflectance = system.reflectance().maxCoeff();
+  shape.tolerance = std::min(options.error.value_or(options.tolerance), 0.5);
+  const ExchangeMatrix* entries = system.transport().entries();
+  shape.entries = entries != nullptr;
+  if (entries) shape.precision = entries->precision();
+  return shape;
+}
+
 Method choose(const RadiositySystem& system, const SolveOptions& options) {
   if (options.bounces) return Method::neumann;
   if (!system.transport().symmetric()) return Method::gmres;
-  const auto pays = [&](const auto& group) {
-    return static_cast<Eigen::Index>(group.size()) >=
-           std::max(least_columns_for_cholesky, system.size() / patches_per_column);
-  };
-  const auto groups = system.groups_of_equal_reflectance();
-  const bool many = !groups.empty() && std::all_of(groups.begin(), groups.end(), pays);
-  return many && system.transport().entries() && system.size() <= size_for_cholesky ? Method::cholesky
-                                                                                    : Method::cg;
+  return cheapest_method(shape(system, options));
 }
 
 void check_method(Method method, const TransportOperator& transport, const SolveOptions& options) {
@@ -91,6 +97,12 @@ PatchField run(const RadiositySystem& system, PatchField start, const SolveOptio
     default:
       return cg(system, std::move(start), watch);
   }
+}
+
+// With F >= 0 and a series that converges, B >= E >= 0. A negative B therefore proves that the series
+// diverges, and that what solves the equations is no light.
+bool unphysical(const PatchField& radiosity) {
+  return radiosity.minCoeff() < -rounding_of_radiosity * radiosity.cwiseAbs().maxCoeff();
 }
 
 }  // namespace
@@ -134,6 +146,12 @@ RadiositySolution solve(const TransportOperator& transport, const PatchField& re
   }
   if (report.converged && report.stopped != Stopped::bounces && report.stopped != Stopped::caller) {
     watch.stop(Stopped::converged, {});
+  }
+  if (!bound.exists() && report.converged && !options.bounces && unphysical(solution.radiosity)) {
+    report.converged = false;
+    watch.stop(Stopped::diverged,
+               "the equations are solved by negative radiosities only: the operator returns more light than "
+               "it is given");
   }
   if (!bound.exists()) {
     if (!report.message.empty()) report.message += "; ";

@@ -50,17 +50,8 @@ double scale_entries(ExchangeMatrix& matrix, const std::vector<double>& areas, c
                                                   : scale_entries<double>(matrix, areas, d);
 }
 
-std::vector<double> row_sums(const ExchangeMatrix& matrix, const std::vector<double>& areas) {
-  const std::vector<double> ones(areas.size(), 1.0);
-  std::vector<double> sums(areas.size());
-  symmetric_product(matrix, ones.data(), sums.data(), 1);
-  for (std::size_t i = 0; i < sums.size(); ++i) sums[i] /= areas[i];
-  return sums;
-}
-
-/// Takes the enclosures that did worst out of `active`, and says so in one sentence.
-std::string give_up_worst(const RowScaling& scaling, const Enclosures& enclosures,
-                          std::vector<char>& active) {
+/// Takes the enclosures that did worst out of `active`; gives a patch of one of them.
+int give_up_worst(const RowScaling& scaling, const Enclosures& enclosures, std::vector<char>& active) {
   const double worst = *std::max_element(scaling.errors.begin(), scaling.errors.end());
   std::vector<char> lost(enclosures.count);
   int first = -1;
@@ -72,11 +63,23 @@ std::string give_up_worst(const RowScaling& scaling, const Enclosures& enclosure
   for (std::size_t i = 0; i < active.size(); ++i) {
     if (lost[enclosures.enclosure[i]]) active[i] = 0;
   }
-  return "the rows of the enclosure of patch " + std::to_string(first) +
-         " cannot be closed by factors within [1/4, 4] and were left as they are";
+  return first;
 }
 
 }  // namespace
+
+std::vector<double> row_sums(const ExchangeMatrix& exchange_areas, std::span<const double> areas) {
+  const std::vector<double> ones(areas.size(), 1.0);
+  std::vector<double> sums(areas.size());
+  symmetric_product(exchange_areas, ones.data(), sums.data(), 1);
+  for (std::size_t i = 0; i < sums.size(); ++i) sums[i] /= areas[i];
+  return sums;
+}
+
+std::string unclosed_message(int patch) {
+  return "the rows of the enclosure of patch " + std::to_string(patch) +
+         " cannot be closed by factors within [1/4, 4] and were left as they are";
+}
 
 RowSumError row_sum_error(std::span<const double> row_sums, std::span<const double> areas,
                           const Enclosures& enclosures) {
@@ -118,7 +121,8 @@ ClosedOperator close_rows(ExchangeMatrix exchange_areas, std::vector<double> are
     const RowScaling scaling = scale_rows(exchange_areas, areas, active, progress);
     report.iterations += scaling.iterations;
     if (*std::max_element(scaling.errors.begin(), scaling.errors.end()) > closed_within) {
-      report.message = give_up_worst(scaling, enclosures, active);
+      report.unclosed = give_up_worst(scaling, enclosures, active);
+      report.message = unclosed_message(report.unclosed);
       continue;
     }
     report.applied = true;

@@ -109,19 +109,10 @@ std::unique_ptr<GatherOperator> stored_rays(const GatherRays& rays, int count, c
 }
 
 std::unique_ptr<GatherOperator> gather_operator(const PatchMesh& mesh, const RayScene& occluders,
-                                                const Enclosures& enclosures, const GatherOptions& options,
-                                                const Progress& progress) {
+                                                const GatherOptions& options, const Progress& progress) {
   const GatherPlan plan = gather_plan(mesh, PatchField::Zero(mesh.size(), 1), options);
-  check_enclosures(mesh, enclosures);
-  const GatherRays rays(mesh, occluders, enclosures, plan.rays, options.seed);
+  const GatherRays rays(mesh, occluders, plan.rays, options.seed);
   return stored_rays(rays, plan.rays, mesh, progress);
-}
-
-void check_enclosures(const PatchMesh& mesh, const Enclosures& enclosures) {
-  if (static_cast<int>(enclosures.enclosure.size()) != mesh.size()) {
-    throw std::invalid_argument("gather: enclosures of " + std::to_string(enclosures.enclosure.size()) +
-                                " patches for a mesh of " + std::to_string(mesh.size()));
-  }
 }
 
 }  // namespace luxel

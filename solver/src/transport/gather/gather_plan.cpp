@@ -12,7 +12,7 @@ namespace {
 
 // Error of single patches' irradiance: error_at_one rays^-error_order, measured on the Cornell box
 // (docs/decisions/0010-gather.md); scenes with more clutter have up to 1.4 times it.
-constexpr double error_at_one = 0.5, error_order = 0.67;
+constexpr double error_at_one = 0.45, error_order = 0.67;
 
 constexpr int least_rays = 16, most_rays = 1 << 20;
 

@@ -5,7 +5,10 @@
 #include <cmath>
 #include <limits>
 
+#include "enclosures/cells.h"
 #include "enclosures/hemisphere_rays.h"
+#include "enclosures/shells.h"
+#include "enclosures/triangle_soup.h"
 #include "sampling/owen_sobol.h"
 #include "sampling/sobol_words.h"
 #include "transport/gather/packets.h"
@@ -17,9 +20,8 @@ namespace {
 
 constexpr int lanes = GatherOperator::lanes;
 
-// Backs that an open enclosure's ray meets nearer than this, in the ray scene's coordinates, may be the
-// rounding of an origin beside an edge.
-constexpr float near_back = 1e-5f;
+// Lost rays of a packet that are asked again before the rest is believed, unless one in so many proves wrong.
+constexpr int lost_for_certain = 4, wrong_among = 8;
 
 // Fresh directions tried for a ray of a closed enclosure that is lost for good: one in 10^6 of the rays
 // beside a crack, at most.
@@ -36,33 +38,40 @@ int shared_digits(int count) {
   return digits;
 }
 
+/// The cell that each patch looks into where it is proven to be closed, else -1; one more -1 for nothing.
+std::vector<std::int32_t> closed_cells(const PatchMesh& mesh, const RayScene& occluders) {
+  const TriangleSoup soup(mesh.occluders, occluders);
+  const Cells cells = find_cells(soup, find_shells(soup), lit_sides(mesh), occluders);
+  std::vector<std::int32_t> result = cells_of_patches(mesh, cells);
+  for (std::int32_t& cell : result) {
+    if (cell >= 0 && cells.proof[cell] != Proof::closed) cell = -1;
+  }
+  result.push_back(-1);
+  return result;
+}
+
 }  // namespace
 
-GatherRays::GatherRays(const PatchMesh& mesh, const RayScene& occluders, const Enclosures& enclosures,
-                       int count, std::uint64_t seed)
+GatherRays::GatherRays(const PatchMesh& mesh, const RayScene& occluders, int count, std::uint64_t seed)
     : mesh_(mesh),
       occluders_(occluders),
-      enclosures_(enclosures),
       count_(count),
       seed_(seed),
       packets_(packets_of(mesh)),
       map_(mesh),
-      words_(reversed_sobol_words(count)) {
-  if (enclosures.count > 1) {
-    enclosure_of_.assign(enclosures.enclosure.begin(), enclosures.enclosure.end());
-    enclosure_of_.push_back(-1);
-  }
+      words_(reversed_sobol_words(count)),
+      enclosures_(closed_cells(mesh, occluders)) {
   scene_.embree = occluders.embree_scene();
   scene_.words = words_.data();
   scene_.lower_digits = 0xffffffffu >> shared_digits(count);
   scene_.map = &map_;
   scene_.nothing = mesh.size();
-  scene_.enclosures = enclosure_of_.empty() ? nullptr : enclosure_of_.data();
-  scene_.near_back = near_back;
+  const bool any = std::any_of(enclosures_.begin(), enclosures_.end(), [](int cell) { return cell >= 0; });
+  scene_.enclosures = any ? enclosures_.data() : nullptr;
 }
 
 std::size_t GatherRays::bytes() const {
-  return packets_.size() * sizeof(packets_[0]) + map_.bytes() + 4 * (words_.size() + enclosure_of_.size());
+  return packets_.size() * sizeof(packets_[0]) + map_.bytes() + 4 * (words_.size() + enclosures_.size());
 }
 
 const PatchLocator& GatherRays::locator() const {
@@ -93,8 +102,7 @@ PacketFrame GatherRays::frame_of(const GatherOperator::Packet& packet) const {
     frame.share[k] = static_cast<float>(own.share);
     const std::uint64_t seed = mixed_seed(seed_ ^ own_stream, patch);
     for (int q = 0; q < 4; ++q) frame.seeds[q][k] = static_cast<std::uint32_t>(mixed_seed(seed, q));
-    const int enclosure = enclosures_.enclosure[patch];
-    frame.enclosure[k] = enclosures_.enclosure_closed[enclosure] ? enclosure : -1;
+    frame.enclosure[k] = enclosures_[patch];
     frame.valid[k] = packet[k] >= 0 ? -1 : 0;
   }
   const std::uint64_t seed = mixed_seed(seed_ ^ shared_stream, packet[0]);
@@ -106,12 +114,20 @@ void GatherRays::trace(std::size_t packet, int first, int count, std::uint32_t* 
   const PacketFrame frame = frame_of(packets_[packet]);
   std::vector<DoubtfulRay> doubtful;
   trace_packet(scene_, frame, first, count, met, doubtful);
+  int asked = 0, lost = 0, found = 0;
   for (const DoubtfulRay& ray : doubtful) {
     const int patch = packets_[packet][ray.lane];
-    met[static_cast<std::size_t>(ray.ray) * lanes + ray.lane] =
-        settle(patch, ray, mixed_seed(seed_ ^ replacement_stream, first + ray.ray));
+    const bool closed = enclosures_[patch] >= 0;
+    if (ray.lost && !closed && lost >= lost_for_certain && lost > wrong_among * found) continue;
+    std::uint32_t& end = met[static_cast<std::size_t>(ray.ray) * lanes + ray.lane];
+    end = settled(patch, ray);
+    ++asked;
+    ++(end == static_cast<std::uint32_t>(mesh_.size()) ? lost : found);
+    if (closed && end == static_cast<std::uint32_t>(mesh_.size())) {
+      end = replaced(patch, mixed_seed(seed_ ^ replacement_stream, first + ray.ray));
+    }
   }
-  asked_twice_ += static_cast<std::int64_t>(doubtful.size());
+  asked_twice_ += asked;
 }
 
 /// The patch that a ray meets, in double precision; -1 for nothing, or in a closed enclosure for a patch of
@@ -120,26 +136,31 @@ int GatherRays::patch_met(int patch, const Vec3& origin, const Vec3& direction) 
   RayScene::Hit hit;
   occluders_.intersect({&origin, 1}, {&mesh_.normals[patch], 1}, {&direction, 1}, {&hit, 1});
   if (hit.primitive < 0) return -1;
-  const int met = locator().patch_at(hit.primitive, hit.front, origin + hit.distance * direction);
-  const int home = enclosures_.enclosure[patch];
-  const bool leaked = met >= 0 && enclosures_.enclosure_closed[home] && enclosures_.enclosure[met] != home;
+  int met = map_.at(hit.primitive, hit.front, hit.u, hit.v);
+  if (met == HitMap::ask) {
+    met = locator().patch_at(hit.primitive, hit.front, origin + hit.distance * direction);
+  }
+  if (met < 0) return -1;
+  const bool leaked = enclosures_[patch] >= 0 && enclosures_[met] != enclosures_[patch];
   return leaked ? -1 : met;
 }
 
-std::uint32_t GatherRays::settle(int patch, const DoubtfulRay& ray, std::uint64_t stream) const {
+std::uint32_t GatherRays::settled(int patch, const DoubtfulRay& ray) const {
   const auto vector = [](const float* x) { return Vec3(x[0], x[1], x[2]); };
   Vec3 origin = vector(ray.origin) / occluders_.scale() + occluders_.centre();
   const Vec3& normal = mesh_.normals[patch];
   origin -= normal.dot(origin - mesh_.centroids[patch]) * normal;
   const int met = patch_met(patch, origin, vector(ray.direction).normalized());
-  if (met >= 0) return static_cast<std::uint32_t>(met);
-  if (enclosures_.enclosure_closed[enclosures_.enclosure[patch]]) {
-    const HemisphereRays others =
-        hemisphere_rays(mesh_, patch, replacements, mixed_seed(stream, patch), outline_margin(occluders_));
-    for (int k = 0; k < replacements; ++k) {
-      const int other = patch_met(patch, others.origins[k], others.directions[k]);
-      if (other >= 0) return static_cast<std::uint32_t>(other);
-    }
+  return static_cast<std::uint32_t>(met >= 0 ? met : mesh_.size());
+}
+
+/// What some other ray of the patch meets.
+std::uint32_t GatherRays::replaced(int patch, std::uint64_t seed) const {
+  const HemisphereRays rays =
+      hemisphere_rays(mesh_, patch, replacements, mixed_seed(seed, patch), outline_margin(occluders_));
+  for (int k = 0; k < replacements; ++k) {
+    const int met = patch_met(patch, rays.origins[k], rays.directions[k]);
+    if (met >= 0) return static_cast<std::uint32_t>(met);
   }
   return static_cast<std::uint32_t>(mesh_.size());
 }

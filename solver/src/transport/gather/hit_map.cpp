@@ -112,4 +112,15 @@ HitMap::HitMap(const PatchMesh& mesh) : triangles_(mesh.occluders.triangles.size
   });
 }
 
+std::int32_t HitMap::at(int triangle, bool front, float u, float v) const {
+  const Triangle& t = triangles_[triangle];
+  const std::int32_t first = t.first[front ? 0 : 1];
+  if (first == no_side) return off_patches;
+  const auto clamped = [](float x, std::int32_t size) {
+    return std::clamp(static_cast<std::int32_t>(x), std::int32_t{0}, size - 1);
+  };
+  const std::int32_t x = clamped(t.x0 + u * t.xu + v * t.xv, t.width);
+  return texels_[first + clamped(t.y0 + u * t.yu + v * t.yv, t.height) * t.width + x];
+}
+
 }  // namespace luxel

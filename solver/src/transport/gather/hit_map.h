@@ -30,6 +30,10 @@ class HitMap {
 
   explicit HitMap(const PatchMesh& mesh);
 
+  /// What the map says of a hit: a patch, `ask`, or `off_patches` where that side has none.
+  std::int32_t at(int triangle, bool front, float u, float v) const;
+  static constexpr std::int32_t off_patches = -2;
+
   const std::vector<Triangle>& triangles() const { return triangles_; }
   const std::vector<std::int32_t>& texels() const { return texels_; }
   std::size_t bytes() const {

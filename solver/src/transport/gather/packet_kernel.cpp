@@ -12,6 +12,7 @@
 // Highway compiles this file once per instruction set; the order of its headers matters.
 // clang-format off
 #include <hwy/foreach_target.h>
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 // clang-format on
 
@@ -134,25 +135,32 @@ HWY_INLINE void StartRays(const PacketScene& scene, const PacketFrame& frame, co
   hn::Store(hn::Set(w, RTC_INVALID_GEOMETRY_ID), w, rays.hit.geomID + k);
 }
 
-// The patches met by lanes k .. to `met`; gives the lanes in doubt.
-HWY_INLINE uint64_t FindPatches(const PacketScene& scene, const PacketFrame& frame, const RTCRayHit16& rays,
-                                int k, uint32_t* met) {
+// A packet under way, and where its hits lie in the map; negative: on no patch.
+struct alignas(64) Flight {
+  RTCRayHit16 rays = {};
+  int32_t texels[lanes];
+};
+
+// Where lanes k .. hit; their texels are called for.
+HWY_INLINE void FindTexels(const PacketScene& scene, int k, Flight& flight) {
   const Real d;
   const Word w;
   const Number n;
+  const RTCHit16& hits = flight.rays.hit;
+  const RTCRay16& rays = flight.rays.ray;
   const auto* numbers = reinterpret_cast<const int32_t*>(scene.map->triangles().data());
   const auto* reals = reinterpret_cast<const float*>(numbers);
-  const auto hit = hn::Ne(hn::Load(w, rays.hit.geomID + k), hn::Set(w, RTC_INVALID_GEOMETRY_ID));
+  const auto hit = hn::Ne(hn::Load(w, hits.geomID + k), hn::Set(w, RTC_INVALID_GEOMETRY_ID));
   const auto hit_number = hn::RebindMask(n, hit);
-  const Numbers nothing = hn::Set(n, scene.nothing), zero = hn::Zero(n), one = hn::Set(n, 1);
+  const Numbers zero = hn::Zero(n), one = hn::Set(n, 1);
 
-  const Numbers triangle = hn::IfThenElseZero(hit_number, hn::BitCast(n, hn::Load(w, rays.hit.primID + k)));
+  const Numbers triangle = hn::IfThenElseZero(hit_number, hn::BitCast(n, hn::Load(w, hits.primID + k)));
   const Numbers at = hn::Mul(triangle, hn::Set(n, HitMap::words));
   const auto real = [&](int q) { return hn::GatherIndex(d, reals, hn::Add(at, hn::Set(n, q))); };
   const auto number = [&](const Numbers q) { return hn::GatherIndex(n, numbers, hn::Add(at, q)); };
   // a lane without a hit holds no coordinates
-  const Reals u = hn::IfThenElseZero(hn::RebindMask(d, hit), hn::Load(d, rays.hit.u + k));
-  const Reals v = hn::IfThenElseZero(hn::RebindMask(d, hit), hn::Load(d, rays.hit.v + k));
+  const Reals u = hn::IfThenElseZero(hn::RebindMask(d, hit), hn::Load(d, hits.u + k));
+  const Reals v = hn::IfThenElseZero(hn::RebindMask(d, hit), hn::Load(d, hits.v + k));
   const Reals x = hn::MulAdd(u, real(1), hn::MulAdd(v, real(2), real(0)));
   const Reals y = hn::MulAdd(u, real(4), hn::MulAdd(v, real(5), real(3)));
   const Numbers width = number(hn::Set(n, 6)), height = number(hn::Set(n, 7));
@@ -161,26 +169,38 @@ HWY_INLINE uint64_t FindPatches(const PacketScene& scene, const PacketFrame& fra
 
   // Embree's normal points to where the corners run counter-clockwise: the front
   const Reals facing =
-      hn::MulAdd(hn::Load(d, rays.hit.Ng_x + k), hn::Load(d, rays.ray.dir_x + k),
-                 hn::MulAdd(hn::Load(d, rays.hit.Ng_y + k), hn::Load(d, rays.ray.dir_y + k),
-                            hn::Mul(hn::Load(d, rays.hit.Ng_z + k), hn::Load(d, rays.ray.dir_z + k))));
+      hn::MulAdd(hn::Load(d, hits.Ng_x + k), hn::Load(d, rays.dir_x + k),
+                 hn::MulAdd(hn::Load(d, hits.Ng_y + k), hn::Load(d, rays.dir_y + k),
+                            hn::Mul(hn::Load(d, hits.Ng_z + k), hn::Load(d, rays.dir_z + k))));
   const auto back = hn::RebindMask(n, hn::Ge(facing, hn::Zero(d)));
   const Numbers first = number(hn::IfThenElse(back, hn::Set(n, 9), hn::Set(n, 8)));
-  const auto on_patch = hn::And(hit_number, hn::Gt(first, hn::Set(n, -1)));
-  const Numbers texel = hn::IfThenElseZero(on_patch, hn::Add(first, hn::Add(hn::Mul(row, width), column)));
-  const Numbers patch =
-      hn::IfThenElse(on_patch, hn::GatherIndex(n, scene.map->texels().data(), texel), nothing);
+  const auto on_patch = hn::AndNot(hn::Lt(first, zero), hit_number);
+  const Numbers texel = hn::Add(first, hn::Add(hn::Mul(row, width), column));
+  hn::Store(hn::IfThenElse(on_patch, texel, hn::Set(n, -1)), n, flight.texels + k);
+  const int end = k + static_cast<int>(hn::Lanes(d));
+  for (int q = k; q < end; ++q) hwy::Prefetch(scene.map->texels().data() + (flight.texels[q] & INT32_MAX));
+}
+
+// The patches there to `met`; gives the lanes in doubt.
+HWY_INLINE uint64_t FindPatches(const PacketScene& scene, const PacketFrame& frame, const Flight& flight,
+                                int k, uint32_t* met) {
+  const Word w;
+  const Number n;
+  const Numbers nothing = hn::Set(n, scene.nothing), zero = hn::Zero(n);
+  const Numbers texel = hn::Load(n, flight.texels + k);
+  const auto off = hn::Lt(texel, zero);
+  const Numbers patch = hn::IfThenElse(
+      off, nothing, hn::GatherIndex(n, scene.map->texels().data(), hn::IfThenZeroElse(off, texel)));
 
   const Numbers home = hn::Load(n, frame.enclosure + k);
   const auto asks = hn::Lt(patch, zero);
   const auto lost = hn::Eq(patch, nothing);
-  const auto closed = hn::Gt(home, hn::Set(n, -1));
-  const auto near = hn::RebindMask(n, hn::Lt(hn::Load(d, rays.ray.tfar + k), hn::Set(d, scene.near_back)));
-  auto doubtful = hn::Or(asks, hn::And(lost, hn::Or(closed, near)));
+  const auto open = hn::Lt(home, zero);
+  auto doubtful = hn::Or(asks, lost);
   const Numbers known = hn::IfThenElse(asks, nothing, patch);
   if (scene.enclosures) {
     const auto elsewhere = hn::Ne(hn::GatherIndex(n, scene.enclosures, known), home);
-    doubtful = hn::Or(doubtful, hn::And(closed, elsewhere));
+    doubtful = hn::Or(doubtful, hn::AndNot(open, elsewhere));
   }
   doubtful = hn::And(doubtful, hn::Ne(hn::Load(n, frame.valid + k), zero));
   hn::StoreU(hn::BitCast(w, known), w, met + k);
@@ -190,37 +210,50 @@ HWY_INLINE uint64_t FindPatches(const PacketScene& scene, const PacketFrame& fra
   return bits[0] | static_cast<uint64_t>(bits[1]) << 8;
 }
 
+HWY_INLINE void Land(const PacketScene& scene, const PacketFrame& frame, const Flight& flight, int ray,
+                     uint32_t* met, std::vector<DoubtfulRay>& doubtful) {
+  const int step = static_cast<int>(hn::Lanes(Real()));
+  uint64_t doubts = 0;
+  for (int k = 0; k < lanes; k += step) {
+    doubts |= FindPatches(scene, frame, flight, k, met + static_cast<size_t>(ray) * lanes) << k;
+  }
+  const RTCRay16& rays = flight.rays.ray;
+  for (; doubts != 0; doubts &= doubts - 1) {
+    const int k = static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero64(doubts));
+    doubtful.push_back({ray,
+                        k,
+                        flight.texels[k] < 0,
+                        {rays.org_x[k], rays.org_y[k], rays.org_z[k]},
+                        {rays.dir_x[k], rays.dir_y[k], rays.dir_z[k]}});
+  }
+}
+
 void Trace(const PacketScene& scene, const PacketFrame& frame, int first, int count, uint32_t* met,
            std::vector<DoubtfulRay>& doubtful) {
-  const Real d;
-  const int step = static_cast<int>(hn::Lanes(d));
+  const int step = static_cast<int>(hn::Lanes(Real()));
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  alignas(64) RTCRayHit16 rays = {};
-  for (int k = 0; k < lanes; ++k) {
-    rays.ray.mask[k] = ~0u;
-    rays.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
+  // two in turn: the texels of one packet arrive while the next is traced
+  Flight flights[2];
+  for (Flight& flight : flights) {
+    for (int k = 0; k < lanes; ++k) {
+      flight.rays.ray.mask[k] = ~0u;
+      flight.rays.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
+    }
   }
   const LaineKarras scramble;
   for (int q = 0; q < count; ++q) {
+    Flight& flight = flights[q % 2];
     const uint32_t* words = scene.words + 4 * static_cast<size_t>(first + q);
     const uint32_t height = bits_reversed(scramble(words[2], frame.shared_seeds[0]));
     const uint32_t azimuth = bits_reversed(scramble(words[3], frame.shared_seeds[1]));
-    for (int k = 0; k < lanes; k += step) StartRays(scene, frame, words, height, azimuth, k, rays);
-    rtcIntersect16(frame.valid, static_cast<RTCScene>(scene.embree), &context, &rays);
-    uint64_t doubts = 0;
-    for (int k = 0; k < lanes; k += step) {
-      doubts |= FindPatches(scene, frame, rays, k, met + static_cast<size_t>(q) * lanes) << k;
-    }
-    for (; doubts != 0; doubts &= doubts - 1) {
-      const int k = static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero64(doubts));
-      doubtful.push_back({q,
-                          k,
-                          {rays.ray.org_x[k], rays.ray.org_y[k], rays.ray.org_z[k]},
-                          {rays.ray.dir_x[k], rays.ray.dir_y[k], rays.ray.dir_z[k]}});
-    }
+    for (int k = 0; k < lanes; k += step) StartRays(scene, frame, words, height, azimuth, k, flight.rays);
+    rtcIntersect16(frame.valid, static_cast<RTCScene>(scene.embree), &context, &flight.rays);
+    for (int k = 0; k < lanes; k += step) FindTexels(scene, k, flight);
+    if (q > 0) Land(scene, frame, flights[(q - 1) % 2], q - 1, met, doubtful);
   }
+  if (count > 0) Land(scene, frame, flights[(count - 1) % 2], count - 1, met, doubtful);
 }
 
 }  // namespace

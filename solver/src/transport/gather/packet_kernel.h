@@ -18,8 +18,9 @@ struct alignas(64) PacketFrame {
   float corner[3][lanes], first[3][lanes], second[3][lanes], third[3][lanes], share[lanes];
   float tangent[3][lanes], bitangent[3][lanes], normal[3][lanes];
   std::uint32_t seeds[4][lanes];  ///< of points and of the lower digits of directions
-  std::int32_t enclosure[lanes];  ///< -1: open, whatever is met is taken
-  std::int32_t valid[lanes];      ///< -1 in use, 0 idle
+  std::int32_t
+      enclosure[lanes];       ///< a closed one, beyond which nothing can be met; -1: not known to be closed
+  std::int32_t valid[lanes];  ///< -1 in use, 0 idle
   std::uint32_t shared_seeds[2];  ///< of the upper digits of directions; last, so that all rows are aligned
 };
 
@@ -30,14 +31,14 @@ struct PacketScene {
   std::uint32_t lower_digits = 0;        ///< mask of the digits of a direction that are a lane's own
   const HitMap* map = nullptr;
   std::int32_t nothing = 0;                  ///< what a lost ray met
-  const std::int32_t* enclosures = nullptr;  ///< of each patch, and of `nothing`; null: there is but one
-  float near_back = 0;                       ///< backs nearer than this are doubted
+  const std::int32_t* enclosures = nullptr;  ///< of each patch, and of `nothing`; null: all open
 };
 
 /// A ray whose end float cannot tell for certain, in the ray scene's coordinates.
 struct DoubtfulRay {
   int ray;  ///< from 0: the first of the call
   int lane;
+  bool lost;  ///< met nothing, or a back; else: the map does not know
   float origin[3], direction[3];
 };
 

@@ -153,10 +153,9 @@ class FinalGather {
 }  // namespace
 
 GatheredSolution solve_gathered(const PatchMesh& mesh, const RayScene& occluders,
-                                const Enclosures& enclosures, const PatchField& reflectance,
-                                const PatchField& emission, const GatherOptions& options,
-                                const SolveOptions& solving, const Progress& progress) {
-  check_enclosures(mesh, enclosures);
+                                const PatchField& reflectance, const PatchField& emission,
+                                const GatherOptions& options, const SolveOptions& solving,
+                                const Progress& progress) {
   if (reflectance.rows() != emission.rows() || reflectance.cols() != emission.cols()) {
     throw std::invalid_argument("solve_gathered: reflectance and emission differ in shape");
   }
@@ -174,7 +173,7 @@ GatheredSolution solve_gathered(const PatchMesh& mesh, const RayScene& occluders
     solution.direct = std::move(direct.irradiance);
     source = reflectance.cwiseProduct(solution.direct);
   }
-  const GatherRays rays(mesh, occluders, enclosures, report.plan.rays, options.seed);
+  const GatherRays rays(mesh, occluders, report.plan.rays, options.seed);
   const auto stored = stored_rays(rays, report.plan.stored_rays, mesh, progress);
   RadiositySolution iterated =
       solve(*stored, reflectance, source, iteration(mesh, reflectance, options, solving));

@@ -10,7 +10,4 @@ namespace luxel {
 std::unique_ptr<GatherOperator> stored_rays(const GatherRays& rays, int count, const PatchMesh& mesh,
                                             const Progress& progress);
 
-/// @throws std::invalid_argument unless they are of this mesh
-void check_enclosures(const PatchMesh& mesh, const Enclosures& enclosures);
-
 }  // namespace luxel

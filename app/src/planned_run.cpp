@@ -1,0 +1,129 @@
+#include "planned_run.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "memory_plan.h"
+#include "output_files.h"
+
+namespace luxel::app {
+
+namespace {
+
+Seconds operator-(const Seconds& a, const Seconds& b) {
+  return {a.cpu - b.cpu, a.wall - b.wall};
+}
+
+void operator+=(Seconds& sum, const Seconds& part) {
+  sum.cpu += part.cpu;
+  sum.wall += part.wall;
+}
+
+Report::Energy figures_of(const Energy& energy) {
+  Report::Energy figures;
+  for (int channel = 0; channel < 3; ++channel) {
+    figures.emitted[channel] = energy.emitted[channel];
+    figures.absorbed[channel] = energy.absorbed[channel];
+    figures.escaped[channel] = energy.escaped[channel];
+  }
+  figures.imbalance = energy.imbalance;
+  return figures;
+}
+
+}  // namespace
+
+PlanOptions plan_options(const SolveCommand& command) {
+  PlanOptions options;
+  options.savings = command.savings;
+  options.form_factors = command.transport.form_factors;
+  options.solve = command.solve;
+  if (command.solve.bounces) options.solve.method = Method::neumann;
+  options.everything = !command.transport.load.empty() || !command.transport.save.empty();
+  // a time series shows the whole scene at each step
+  options.together = std::any_of(command.outputs.begin(), command.outputs.end(),
+                                 [](const std::string& file) { return extension_of(file) == ".pvd"; });
+  return options;
+}
+
+PlannedRun::PlannedRun(const SolveCommand& command, std::function<bool(const Iteration&)> on_iteration)
+    : command_(command), on_iteration_(std::move(on_iteration)), options_(plan_options(command)) {
+  options_.solve.on_iteration = [this](const Iteration& iteration) { return record(iteration); };
+}
+
+RadiositySolution PlannedRun::run(Assembly& assembly, const Progress& progress, Report& report) {
+  watch_ = Stopwatch();
+  stage_start_ = {};
+  const bool at_hand = assembly.transport != nullptr;
+  Enclosures& enclosures = assembly.record.enclosures;
+  if (!at_hand) enclosures = planned_enclosures(assembly.mesh, options_, progress);
+  plan(assembly, enclosures, report);
+  PlannedSolution light =
+      at_hand ? run_plan(plan_, *assembly.transport, assembly.mesh, options_, listener(progress))
+              : run_plan(plan_, assembly.mesh, enclosures, options_, listener(progress));
+  if (!at_hand) report_systems(assembly, light, report);
+  report_solver(light, report);
+  return std::move(light.solution);
+}
+
+void PlannedRun::plan(const Assembly& assembly, const Enclosures& enclosures, Report& report) {
+  plan_ = make_plan(assembly.mesh, enclosures, options_);
+  for (const LeftOut& item : plan_.left_out) report.left_out.push_back({item.what, item.why, item.saved});
+  check_memory(static_cast<std::size_t>(planned_bytes(plan_)), command_.general.memory, assembly.mesh.size());
+}
+
+PlanListener PlannedRun::listener(const Progress& progress) {
+  return {progress, [this](PlanStage stage) { enter(stage); }};
+}
+
+void PlannedRun::enter(PlanStage stage) {
+  const Seconds now = watch_.elapsed();
+  (stage_ == PlanStage::assembling ? assembling_ : solving_) += now - stage_start_;
+  stage_ = stage;
+  stage_start_ = now;
+}
+
+bool PlannedRun::record(const Iteration& iteration) {
+  if (iteration.number == 0) times_.emplace_back();
+  times_.back().push_back(watch_.elapsed() - stage_start_);
+  return on_iteration_(iteration);
+}
+
+void PlannedRun::report_systems(Assembly& assembly, const PlannedSolution& light, Report& report) const {
+  OperatorRecord& record = assembly.record;
+  record.options = options_.form_factors;
+  record.form_factors = light.form_factors;
+  record.closure = light.closure;
+  assembly.rows = row_errors(light.row_sums, assembly.mesh.areas, record.enclosures);
+  report_operator(assembly, "dense", light.operator_bytes, assembling_, report);
+}
+
+void PlannedRun::report_solver(const PlannedSolution& light, Report& report) const {
+  const SolveReport& solved = light.solution.report;
+  Report::Solver figures;
+  figures.method = name(solved.method);
+  figures.iterations = solved.iterations;
+  figures.converged = solved.converged;
+  figures.relative_residual = solved.relative_residual;
+  figures.error_bound = solved.error_bound;
+  figures.cpu_seconds = solving_.cpu;
+  figures.wall_seconds = solving_.wall;
+  figures.message = solved.message;
+  figures.history = history(solved.history);
+  report.solver = figures;
+  report.error = Report::Error{.algebraic = solved.error_bound};
+  report.energy = figures_of(light.energy);
+}
+
+// Systems are solved one after the other: iteration k of all is done when each has done k, or is done.
+std::vector<Report::HistoryEntry> PlannedRun::history(const std::vector<Iteration>& iterations) const {
+  std::vector<Report::HistoryEntry> entries;
+  for (std::size_t k = 0; k < iterations.size(); ++k) {
+    Seconds spent;
+    for (const auto& times : times_) spent += times[std::min(k, times.size() - 1)];
+    entries.push_back(
+        {iterations[k].number, spent.wall, spent.cpu, iterations[k].relative_residual, not_known});
+  }
+  return entries;
+}
+
+}  // namespace luxel::app

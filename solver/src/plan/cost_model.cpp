@@ -1,0 +1,146 @@
+#include "plan/cost_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace luxel {
+
+namespace {
+
+// An application streams the matrix once for every three columns, from memory [s an entry of the half], and
+// multiplies.
+constexpr double stream_float32 = 0.31e-9;
+constexpr double stream_float64 = 0.55e-9;
+constexpr double multiply = 0.065e-9;   // a column
+constexpr double start_of_pass = 2e-5;  // tasks, partial sums
+constexpr int columns_per_pass = 3;
+
+// Factoring in float32 [s a multiplication and addition], and one column forth and back with its refinement
+// [s an entry of the half].
+constexpr double factor_step = 2.1e-11;
+constexpr double substitution = 0.65e-9;
+constexpr double start_of_factor = 3e-4;  // panels, tasks
+
+// solve() applies the operator besides: the start, the check at the end, the error bound.
+constexpr double applications_besides = 3;
+
+// Starting the program; reading and cutting, and writing nothing [s a patch].
+constexpr double start = 0.02;
+constexpr double mesh_step = 3e-6;
+
+// Rays of find_enclosures().
+constexpr double enclosure_ray = 2e-7;
+
+// A facing pair at accuracy 1e-3, and how much more each digit costs.
+constexpr double facing_pair = 12e-9;
+constexpr double pair_digit = 1.3;
+
+// A pair that is clipped, and one that rays decide.
+constexpr double clipped_pair = 2.5e-6;
+constexpr double crowded_pair = 4e-6;
+
+// Passes over the matrix that close_rows() takes.
+constexpr double closure_passes = 40;
+constexpr double open_passes = 3;
+
+// The program with its libraries loaded; patches, clusters, ray scene, three channels of everything and the
+// writers' buffers [a patch].
+constexpr double program_bytes = 12e6;
+constexpr double patch_bytes = 2500;
+
+// Beyond this the factor's N^2 / 2 float32 numbers are 0.5 GB, and it would take hundreds of columns to pay.
+constexpr double largest_factor = 16'000;
+
+}  // namespace
+
+int SolveShape::column_count() const {
+  return std::accumulate(columns.begin(), columns.end(), 0);
+}
+
+double apply_seconds(double patches, int columns, Precision precision) {
+  const double entries = patches * patches / 2;
+  const double passes = std::ceil(static_cast<double>(columns) / columns_per_pass);
+  const double stream = precision == Precision::float32 ? stream_float32 : stream_float64;
+  return passes * (start_of_pass + entries * stream) + columns * entries * multiply;
+}
+
+double bounces_needed(double largest_reflectance, double tolerance) {
+  if (largest_reflectance <= 0) return 0;
+  if (largest_reflectance >= 1) return INFINITY;
+  return std::max(0.0, std::ceil(std::log(tolerance) / std::log(largest_reflectance)) - 1);
+}
+
+// The light of a room is nearly uniform after a few bounces, so that all but one eigenvalue of K are small:
+// the residual falls by exp(1.1) or more a step, however white the room. Fitted to reflectances of 0.5, 0.8,
+// 0.9 and 0.999 (13, 15, 20 and 25 steps to 1e-12).
+double cg_iterations(double mean_reflectance, double tolerance) {
+  return std::max(1.0, std::ceil(-std::log(tolerance) / (1.1 + 2 * (1 - mean_reflectance))));
+}
+
+double solve_seconds(Method method, const SolveShape& shape) {
+  const int columns = shape.column_count();
+  const double apply = apply_seconds(shape.patches, columns, shape.precision);
+  double seconds = applications_besides * apply;
+  if (method == Method::cholesky) {
+    const double n = shape.patches;
+    for (const int group : shape.columns) {
+      seconds += start_of_factor + n * n * n / 6 * factor_step + group * n * n / 2 * substitution;
+    }
+    return seconds;
+  }
+  const double iterations = method == Method::neumann
+                                ? std::max(1.0, bounces_needed(shape.largest_reflectance, shape.tolerance))
+                                : cg_iterations(shape.mean_reflectance, shape.tolerance);
+  return seconds + iterations * apply;
+}
+
+double mesh_seconds(double patches) {
+  return start + mesh_step * patches;
+}
+
+double enclosure_seconds(double rays) {
+  return enclosure_ray * rays;
+}
+
+double assembly_seconds(double facing_pairs, double accuracy) {
+  return facing_pairs * facing_pair * std::pow(pair_digit, std::max(0.0, -3 - std::log10(accuracy)));
+}
+
+double visibility_seconds(double clipped_pairs, double crowded_pairs) {
+  return clipped_pairs * clipped_pair + crowded_pairs * crowded_pair;
+}
+
+double closure_seconds(double patches, Precision precision, bool closed) {
+  return (closed ? closure_passes : open_passes) * apply_seconds(patches, 1, precision);
+}
+
+double mesh_bytes(double patches) {
+  return program_bytes + patch_bytes * patches;
+}
+
+double operator_bytes(double patches, Precision precision) {
+  return patches * (patches - 1) / 2 * (precision == Precision::float32 ? 4 : 8);
+}
+
+double factor_bytes(double patches, Method method) {
+  if (method == Method::cholesky) return patches * (patches + 1) / 2 * 8;
+  if (method == Method::lu) return patches * patches * 8;
+  return 0;
+}
+
+Method cheapest_method(const SolveShape& shape) {
+  Method best = Method::neumann;
+  double least = solve_seconds(best, shape);
+  const auto consider = [&](Method method) {
+    const double seconds = solve_seconds(method, shape);
+    if (!(seconds < least)) return;
+    best = method;
+    least = seconds;
+  };
+  consider(Method::cg);
+  if (shape.entries && shape.patches <= largest_factor) consider(Method::cholesky);
+  return best;
+}
+
+}  // namespace luxel

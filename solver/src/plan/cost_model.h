@@ -1,0 +1,59 @@
+#pragma once
+
+#include <vector>
+
+#include "luxel/exchange_matrix.h"
+#include "luxel/solve.h"
+
+// What the stages cost [CPU seconds]; docs/plan.md tells where and how the constants were measured.
+namespace luxel {
+
+/// A system as far as the cost of solving it goes.
+struct SolveShape {
+  double patches = 0;
+  std::vector<int> columns;        ///< right-hand sides of each reflectance
+  double mean_reflectance = 0;     ///< weighted by area, of the brightest column
+  double largest_reflectance = 0;  ///< of any patch and column
+  double tolerance = 1e-6;         ///< relative residual asked for
+  Precision precision = Precision::float32;
+  bool entries = true;  ///< Cholesky has what it needs
+
+  int column_count() const;
+};
+
+/// One application of a dense operator.
+double apply_seconds(double patches, int columns, Precision precision);
+
+/// Bounces after which the relative residual is proven to be at most `tolerance`: rho^(K + 1), since F never
+/// lengthens in the area-weighted norm (it is symmetric there, with rows that sum to 1 at most).
+double bounces_needed(double largest_reflectance, double tolerance);
+
+/// Iterations of conjugate gradients, about.
+double cg_iterations(double mean_reflectance, double tolerance);
+
+/// All of solve() by cg, neumann or cholesky.
+double solve_seconds(Method method, const SolveShape& shape);
+
+/// Reading and cutting a scene, and the start of the program.
+double mesh_seconds(double patches);
+double enclosure_seconds(double rays);
+
+/// Form factors of so many facing pairs, as if nothing hid them.
+double assembly_seconds(double facing_pairs, double accuracy);
+
+/// Partly hidden pairs have more occluders between them than this when rays decide; else they are clipped.
+inline constexpr std::size_t few_occluders = 6;
+double visibility_seconds(double clipped_pairs, double crowded_pairs);
+
+/// Row sums, and scaling them in a closed enclosure.
+double closure_seconds(double patches, Precision precision, bool closed);
+
+// Memory [bytes].
+double mesh_bytes(double patches);
+double operator_bytes(double patches, Precision precision);
+double factor_bytes(double patches, Method method);
+
+/// The cheapest of the three, bounces where they cost the same; cholesky only where it can be had.
+Method cheapest_method(const SolveShape& shape);
+
+}  // namespace luxel

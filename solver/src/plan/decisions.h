@@ -1,0 +1,26 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "luxel/plan.h"
+
+// What is left out, in words: each function tells one decision, or nothing where nothing is left out.
+namespace luxel {
+
+std::optional<LeftOut> dark_groups(int groups, int dark, int all);
+std::optional<LeftOut> lone_patches(int lone);
+std::optional<LeftOut> pairs_between(const std::vector<SystemPlan>& systems);
+/// Systems in which nothing can hide anything.
+std::optional<LeftOut> left_rays(const std::vector<SystemPlan>& systems);
+/// Polygons that cannot hide anything, in the other systems.
+std::optional<LeftOut> idle_occluders(const std::vector<SystemPlan>& systems);
+std::optional<LeftOut> dark_channels(const std::vector<SystemPlan>& systems);
+std::optional<LeftOut> equal_channels(const std::vector<SystemPlan>& systems);
+/// Patches with a reflectance of exactly 0 in every channel.
+std::optional<LeftOut> black_patches(const PatchField& reflectance);
+
+/// Adds a decision if there is one.
+void note(std::vector<LeftOut>& list, std::optional<LeftOut> decision);
+
+}  // namespace luxel

@@ -1,0 +1,142 @@
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "luxel/gather_operator.h"
+#include "solver/gather_scenes.h"
+#include "transport/gather/lamps.h"
+
+namespace luxel {
+namespace {
+
+using namespace luxel::testing;
+
+constexpr double pi = std::numbers::pi;
+
+/// Form factor from a point to a parallel rectangle a x b at distance c whose corner lies above it.
+/// Source: Howell, A Catalog of Radiation Heat Transfer Configuration Factors, B-4.
+double below_a_corner(double a, double b, double c) {
+  const double x = a / c, y = b / c, p = std::sqrt(1 + x * x), q = std::sqrt(1 + y * y);
+  return (x / p * std::atan(y / p) + y / q * std::atan(x / q)) / (2 * pi);
+}
+
+/// A small square at the origin facing up, a lamp 2 x 2 at height 1 above it facing down, and more.
+PatchMesh square_below_a_lamp(int cuts, std::vector<std::array<Vec3, 4>> more = {}) {
+  Boxes faces;
+  const double s = 1e-3;
+  const auto add = [&](const std::array<Vec3, 4>& corners) {
+    const int first = static_cast<int>(faces.vertices.size());
+    faces.vertices.insert(faces.vertices.end(), corners.begin(), corners.end());
+    faces.faces.push_back({first, first + 1, first + 2, first + 3});
+  };
+  add({Vec3(-s, -s, 0), Vec3(s, -s, 0), Vec3(s, s, 0), Vec3(-s, s, 0)});
+  add({Vec3(-1, -1, 1), Vec3(-1, 1, 1), Vec3(1, 1, 1), Vec3(1, -1, 1)});
+  for (const auto& corners : more) add(corners);
+  return cut_faces(faces, cuts);
+}
+
+double light_on_first(const PatchMesh& mesh, const PatchField& emission, const GatherOptions& options = {}) {
+  return direct_irradiance(mesh, RayScene(mesh.occluders), emission, options).irradiance(0, 0);
+}
+
+TEST(DirectIrradiance, OfAnUnoccludedLampIsTheClosedForm) {
+  const PatchMesh mesh = square_below_a_lamp(1);
+
+  // the patch is small: its mean differs from its middle by about s^2 = 1e-6; offsets of float are 1e-6 too
+  EXPECT_NEAR(light_on_first(mesh, glow(mesh, {1}, 3)), 3 * 4 * below_a_corner(1, 1, 1), 3e-5);
+}
+
+TEST(DirectIrradiance, DoesNotDependOnHowTheLampIsCut) {
+  const PatchMesh whole = square_below_a_lamp(1), cut = square_below_a_lamp(7);
+
+  EXPECT_NEAR(light_on_first(cut, glow(cut, {1})), light_on_first(whole, glow(whole, {1})), 1e-5);
+}
+
+TEST(DirectIrradiance, IsHalvedByAScreenOverHalfTheLamp) {
+  const PatchMesh mesh =
+      square_below_a_lamp(1, {{Vec3(0, -2, 0.5), Vec3(2, -2, 0.5), Vec3(2, 2, 0.5), Vec3(0, 2, 0.5)}});
+  GatherOptions options;
+  options.shadow_rays = 4096;
+
+  // rays to a lamp cut by a straight edge: their net leaves 4096^-0.67 = 0.4 % of the contrast
+  EXPECT_NEAR(light_on_first(mesh, glow(mesh, {1}), options), 2 * below_a_corner(1, 1, 1), 4e-3);
+}
+
+TEST(DirectIrradiance, IsNothingBehindAWall) {
+  const PatchMesh mesh =
+      square_below_a_lamp(1, {{Vec3(-9, -9, 0.5), Vec3(9, -9, 0.5), Vec3(9, 9, 0.5), Vec3(-9, 9, 0.5)}});
+
+  EXPECT_EQ(light_on_first(mesh, glow(mesh, {1})), 0);
+}
+
+TEST(DirectIrradiance, AddsLampsOfOtherColours) {
+  const PatchMesh mesh =
+      square_below_a_lamp(1, {{Vec3(-1, -1, 0), Vec3(-1, 1, 0), Vec3(-1, 1, 1), Vec3(-1, -1, 1)}});
+  PatchField emission(mesh.size(), 2);
+  emission << 0, 0, 2, 5, 7, 3;
+
+  const PatchField both = direct_irradiance(mesh, RayScene(mesh.occluders), emission).irradiance;
+
+  const double above = light_on_first(mesh, glow(mesh, {1})), beside = light_on_first(mesh, glow(mesh, {2}));
+  EXPECT_NEAR(both(0, 0), 2 * above + 7 * beside, 1e-12);
+  EXPECT_NEAR(both(0, 1), 5 * above + 3 * beside, 1e-12);
+}
+
+TEST(DirectIrradiance, GivesTheSameBitsForAnyNumberOfThreads) {
+  const PatchMesh mesh = cut_faces(room_with_a_box(), 6);
+  const PatchField emission = glow(mesh, {1});
+  const auto direct = [&] { return direct_irradiance(mesh, RayScene(mesh.occluders), emission).irradiance; };
+  PatchField serial;
+  {
+    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+    serial = direct();
+  }
+
+  EXPECT_EQ(direct(), serial);
+}
+
+Lamp rectangle(const std::array<Vec3, 4>& corners) {
+  Lamp lamp;
+  for (int k = 0; k < 4; ++k) lamp.outline.push_back({corners[k], corners[(k + 1) % 4]});
+  lamp.normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
+  lamp.offset = lamp.normal.dot(corners[0]);
+  return lamp;
+}
+
+TEST(FormFactor, CutsALampAtTheHorizon) {
+  // a wall from far below the ground to height h, at distance c, endless to both sides: (1 - cos) / 2 with
+  // tan = h / c, the two-dimensional closed form
+  const double h = 2, c = 1.5, endless = 1e5;
+  const Lamp wall =
+      rectangle({Vec3(c, -endless, -3), Vec3(c, -endless, h), Vec3(c, endless, h), Vec3(c, endless, -3)});
+
+  const double seen = form_factor(Vec3::Zero(), Vec3::UnitZ(), wall);
+
+  EXPECT_NEAR(seen, (1 - std::cos(std::atan(h / c))) / 2, 1e-9);  // the ends are missing: (c / endless)^2
+}
+
+TEST(FormFactor, SeesNothingFromBehind) {
+  const Lamp wall = rectangle({Vec3(1, -1, 0), Vec3(1, -1, 1), Vec3(1, 1, 1), Vec3(1, 1, 0)});
+
+  EXPECT_EQ(form_factor(Vec3(2, 0, 0), Vec3::UnitZ(), wall), 0);
+}
+
+TEST(LampsOf, JoinsPatchesThatEmitAlikeOnOnePolygon) {
+  const PatchMesh mesh = cut_faces(Boxes().add({0, 0, 0}, {1, 1, 1}, true), 4, true);
+  PatchField emission = glow(mesh, {1, 2});
+  emission.col(0) *= 2;
+  emission(0, 0) = 1;  // and one patch of the floor
+
+  const std::vector<Lamp> lamps = lamps_of(mesh, emission, RayScene(mesh.occluders));
+
+  ASSERT_EQ(lamps.size(), 3u);
+  EXPECT_TRUE(lamps[0].triangle);
+  EXPECT_EQ(lamps[1].outline.size(), 4u);
+  EXPECT_TRUE(lamps[1].fills_frame);
+  EXPECT_NEAR(lamps[1].area, 1, 1e-12);
+}
+
+}  // namespace
+}  // namespace luxel
