@@ -14,20 +14,14 @@ function(luxel_module name)
     PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
     PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/src)
   target_link_libraries(luxel_${name} PUBLIC ${MODULE_PUBLIC} PRIVATE ${MODULE_PRIVATE})
-  target_compile_definitions(luxel_${name} INTERFACE ${luxel_eigen_layout})
+  luxel_eigen_layout(luxel_${name})
   luxel_compile_options(luxel_${name})
   install(TARGETS luxel_${name} EXPORT luxel ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
   install(DIRECTORY include/luxel DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 endfunction()
 
-# Eigen lays out, allocates and frees its arrays by the instruction set that it is compiled for; a program built without
-# LUXEL_ARCHITECTURE would free what these libraries allocate in another way. 16 is what all x86-64 agrees on. Every
-# target of ours and every user of one has it: one without is enough to mix the two.
-set(luxel_eigen_layout EIGEN_MAX_ALIGN_BYTES=16 EIGEN_MALLOC_ALREADY_ALIGNED=1)
-
 # Warnings, instruction set and sanitizers for a target of our own.
 function(luxel_compile_options target)
-  target_compile_definitions(${target} PRIVATE ${luxel_eigen_layout})
   # maybe-uninitialized: gcc 12 reports every std::optional and fixed Eigen array that it inlines (gcc bug 80635)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wshadow -Wno-psabi -Wno-maybe-uninitialized)
   if(LUXEL_ARCHITECTURE)
@@ -37,5 +31,17 @@ function(luxel_compile_options target)
     target_compile_options(${target} PRIVATE -fsanitize=${LUXEL_SANITIZE} -fno-sanitize-recover=all
                                              -fno-omit-frame-pointer)
     target_link_options(${target} PUBLIC -fsanitize=${LUXEL_SANITIZE})
+  endif()
+endfunction()
+
+# Eigen aligns the arrays inside objects, and takes and gives back heap memory, by the instruction set that it is
+# compiled for: a program without LUXEL_ARCHITECTURE would free what the libraries allocate in another way. 16 bytes is
+# what all x86-64 agrees on; heap memory is taken Eigen's own way everywhere, which it is with AVX (v3, v4) already.
+function(luxel_eigen_layout target)
+  target_compile_definitions(${target} PUBLIC EIGEN_MAX_ALIGN_BYTES=16)
+  if(LUXEL_ARCHITECTURE MATCHES "v[34]$" AND PROJECT_IS_TOP_LEVEL)
+    target_compile_definitions(${target} INTERFACE $<INSTALL_INTERFACE:EIGEN_MALLOC_ALREADY_ALIGNED=0>)
+  else()
+    target_compile_definitions(${target} PUBLIC EIGEN_MALLOC_ALREADY_ALIGNED=0)
   endif()
 endfunction()

@@ -26,8 +26,9 @@ struct MeshReport {
   double min_angle = 0;          ///< smallest corner angle of a patch [degrees]
   double one_percent_angle = 0;  ///< smallest angle that 99 % of the patches exceed [degrees]
   double sharpest_input_angle =
-      0;                   ///< smallest corner of an input polygon [degrees]: min_angle cannot be above it
-  double max_aspect = 0;   ///< largest (longest edge) / (in-radius), scaled so that regular triangles and squares have 1
+      0;  ///< smallest corner of an input polygon [degrees]: min_angle cannot be above it
+  double max_aspect =
+      0;  ///< largest (longest edge) / (in-radius), scaled so that regular triangles and squares have 1
   double area_error = 0;   ///< relative difference between the area of the patches and of the scene
   double edge_length = 0;  ///< target edge length [m]; 0 for as-is
   int welded_vertices = 0;

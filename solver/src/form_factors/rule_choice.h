@@ -6,10 +6,10 @@
 
 namespace luxel {
 
-/// Which quadrature is accurate enough for a pair at a given distance, for an accuracy A. The relative error of
-/// a pair's form factor by the rule of level q is at most about error_constant[q] / (distance / edge)^(2 q):
-/// the first term that the rule leaves out. Rows and groups add up such errors weighted by form factors, so
-/// that neither exceeds A.
+/// Which quadrature is accurate enough for a pair at a given distance, for an accuracy A. The relative error
+/// of a pair's form factor by the rule of level q is at most about error_constant[q] / (distance / edge)^(2
+/// q): the first term that the rule leaves out. Rows and groups add up such errors weighted by form factors,
+/// so that neither exceeds A.
 struct RuleChoice {
   /// Smallest distance of the centres, in longest edges, from which level q may be used; index 0 unused.
   std::array<double, point_levels + 1> from;
