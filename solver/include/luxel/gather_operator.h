@@ -125,7 +125,7 @@ struct GatheredSolution {
 /// stored rays a patch, at last H = D + F U gathered with all of them, B = E + rho H. Where emitters cover
 /// much of the surface they are met by the rays instead. The same input and seed give the same bits for any
 /// number of threads.
-/// Cost: 30 to 50 ns of CPU a ray on merged polygons, 100 to 200 on a million triangles.
+/// Cost: 30 to 50 ns of CPU a ray on merged polygons, about 1 us on a million rough triangles.
 /// @param solving     method, bounces and callbacks of the iteration on U; its tolerance is raised to a
 /// hundredth of the accuracy, since less is lost in the sampling
 /// @throws SingularSystem; std::invalid_argument; Cancelled

@@ -30,6 +30,11 @@ constexpr int replacements = 8;
 // Streams of random numbers, all seeded by patch or packet.
 constexpr std::uint64_t own_stream = 0x67617468, shared_stream = 0x73686172, replacement_stream = 0x7265706c;
 
+// With more triangles a packet shares whole directions: through small triangles, rays that are nearly
+// parallel part too soon, and where little is merged there is no plane over which neighbours' noise could be
+// fitted.
+constexpr std::size_t large_scene = 100'000;
+
 /// Shared upper digits of each of a direction's two numbers: with half the net's digits in each, no two rays
 /// of a patch share them all.
 int shared_digits(int count) {
@@ -63,7 +68,7 @@ GatherRays::GatherRays(const PatchMesh& mesh, const RayScene& occluders, int cou
       enclosures_(closed_cells(mesh, occluders)) {
   scene_.embree = occluders.embree_scene();
   scene_.words = words_.data();
-  scene_.lower_digits = 0xffffffffu >> shared_digits(count);
+  scene_.lower_digits = map_.triangles().size() > large_scene ? 0 : 0xffffffffu >> shared_digits(count);
   scene_.map = &map_;
   scene_.nothing = mesh.size();
   const bool any = std::any_of(enclosures_.begin(), enclosures_.end(), [](int cell) { return cell >= 0; });
