@@ -40,6 +40,10 @@ ExitStatus run(const SolveCommand& command) {
   });
   const RadiositySolution solution = planned.run(assembly, progress, report);
   if (interruption_requested()) throw Cancelled();
+  if (solution.radiosity.maxCoeff() > 0 && solution.irradiance.maxCoeff() == 0) {
+    report.scene.warnings.push_back(
+        "light arrives nowhere: no patch faces one that shines; are the faces turned inside out?");
+  }
 
   add_run_figures(report, watch);
   files.write(solution, report, progress);

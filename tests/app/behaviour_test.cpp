@@ -109,6 +109,17 @@ TEST(Program, NoEmissionIsSolvedToExactlyZeroWithAWarning) {
   for (const double b : csv_column(folder.read("a.csv"), "B_r")) EXPECT_EQ(b, 0);
 }
 
+TEST(Program, FacesTurnedInsideOutAreWarnedAbout) {
+  const Folder folder;
+  const json glowing = {{"white", {{"reflectance", 0.5}, {"exitance", 1}}}};
+  const std::string scene = folder.write("scene.json", scene_text("cube_outward", glowing));
+
+  const Outcome outcome = luxel({"solve", scene, "--as-is"});
+
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_NE(outcome.err.find("turned inside out"), std::string::npos) << outcome.err;
+}
+
 TEST(Program, NotConvergedIsStatusOneAndTheResultsAreWritten) {
   const Folder folder;
   const std::string scene = folder.write("scene.json", scene_text("cube", lit_room, ceiling_lamp));
