@@ -13,9 +13,9 @@ namespace luxel {
 
 namespace {
 
-// However few rays the error asks for, one in so many pairs gets one: shadows narrower than that are left to
+// However few rays the error asks for, there is one for so many pairs: shadows narrower than that are left to
 // chance.
-constexpr double pairs_a_ray = 2;
+constexpr double pairs_a_ray = 1;
 
 // Beyond so many rays a pair, those that are left undecided are cheaper one by one.
 constexpr double most_rays_a_pair = 64;

@@ -35,7 +35,7 @@ struct BlockSights {
 /// hidden region wrongly on the one side does so as often on the other. Safe from many threads.
 class SightSorter {
  public:
-  static constexpr int largest_side = 64;  ///< patches of the clusters that sort() takes
+  static constexpr int largest_side = 32;  ///< patches of the clusters that sort() takes
 
   SightSorter(const ClusterTree& tree, const OccluderScene& scene, std::uint64_t seed);
 

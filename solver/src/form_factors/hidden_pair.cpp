@@ -33,10 +33,40 @@ double side(const Span& span) {
   return span.high > -span.low ? span.high : span.low;
 }
 
+// Whether the cut lies on the edge's line, up to the distance at which a point lies on an occluder.
+bool on_line(const ShadowEdge& edge, const ShadowEdge& cut) {
+  const Vec3 along = (edge.q - edge.p).normalized();
+  return std::max((cut.p - edge.p).cross(along).squaredNorm(), (cut.q - edge.p).cross(along).squaredNorm()) <=
+         side_tolerance * side_tolerance;
+}
+
+enum class Side { front, behind, both };
+
+Side side_of_plane(const Occluder& round_body, const Plane& plane) {
+  bool front = false, behind = false;
+  for (const Vec3& x : round_body.vertices) {
+    const double height = plane.distance(x);
+    front |= height > side_tolerance;
+    behind |= height < -side_tolerance;
+    if (front && behind) return Side::both;
+  }
+  return front ? Side::front : Side::behind;
+}
+
 }  // namespace
 
 HiddenPair::HiddenPair(const PatchMesh& mesh, const ClusterTree& tree, const OccluderSet& set)
-    : mesh_(mesh), tree_(tree), set_(set) {}
+    : mesh_(mesh),
+      tree_(tree),
+      set_(set),
+      round_body_(static_cast<std::size_t>(mesh.occluders.polygon_count), -1) {
+  for (std::size_t k = 0; k < set.occluders.size(); ++k) {
+    const Occluder& occluder = set.occluders[k];
+    if (!occluder.round()) continue;
+    for (int f = occluder.begin; f < occluder.end; ++f)
+      round_body_[set.faces[f].polygon] = static_cast<int>(k);
+  }
+}
 
 HiddenPair::Ends HiddenPair::ends(int s, int t, const std::vector<Candidate>& candidates) const {
   const WorkPatch *first = &tree_.patches[s], *second = &tree_.patches[t];
@@ -48,6 +78,15 @@ HiddenPair::Ends HiddenPair::ends(int s, int t, const std::vector<Candidate>& ca
     along += a / (a + b) / static_cast<double>(candidates.size());
   }
   if (first->edge * (1 - along) > second->edge * along) std::swap(first, second);
+  // round bodies are on one side of the inner patch's plane, if they can be
+  for (const Candidate& candidate : candidates) {
+    const Occluder& occluder = set_.occluders[candidate.occluder];
+    if (occluder.round() && side_of_plane(occluder, second->plane) == Side::both &&
+        side_of_plane(occluder, first->plane) != Side::both) {
+      std::swap(first, second);
+      break;
+    }
+  }
   Ends ends{first, second, {}, {}};
   ends.cell = clip(first->outline, second->plane, side_tolerance);
   ends.target = clip(second->outline, first->plane, side_tolerance);
@@ -58,6 +97,10 @@ HiddenPair::Ends HiddenPair::ends(int s, int t, const std::vector<Candidate>& ca
 // of.
 bool HiddenPair::own(const Occluder& occluder, const Ends& ends) const {
   const int outer = mesh_.polygons[ends.outer->patch], inner = mesh_.polygons[ends.inner->patch];
+  if (occluder.round()) {
+    const auto k = static_cast<int>(&occluder - set_.occluders.data());
+    return round_body_[outer] == k || round_body_[inner] == k;
+  }
   for (int f = occluder.begin; f < occluder.end; ++f) {
     const int polygon = set_.faces[f].polygon;
     if (polygon == outer || polygon == inner) return true;
@@ -71,7 +114,7 @@ std::vector<Polygon> HiddenPair::cells_by_side(const Ends& ends,
   const double length = ends.outer->edge;
   for (const Candidate& candidate : candidates) {
     const Occluder& occluder = set_.occluders[candidate.occluder];
-    if (own(occluder, ends)) continue;
+    if (occluder.round() || own(occluder, ends)) continue;
     for (int f = occluder.begin; f < occluder.end; ++f) {
       const Plane& plane = set_.faces[f].plane;
       const Span span = span_along(ends.cell, plane);
@@ -114,64 +157,133 @@ bool HiddenPair::add_cut(const Polygon& cell, const Polygon& target, const Plane
   return true;
 }
 
-HiddenPair::Cast HiddenPair::cast(const Polygon& cell, const Ends& ends, const Occluder& occluder) {
+HiddenPair::Cast HiddenPair::cast_face(const Polygon& cell, const Ends& ends, const OccluderFace& face) {
   edges_.clear();
   cuts_.clear();
-  if (!occluder.body()) {
-    const OccluderFace& face = set_.faces[occluder.begin];
-    const double height = side(span_along(cell, face.plane));
-    if (std::abs(height) <= side_tolerance) return Cast::misses;
-    const Plane seen = height > 0 ? face.plane : face.plane.flipped();
-    const Span span = span_along(ends.target, seen);
-    if (span.low >= -side_tolerance) return Cast::misses;
-    if (span.high > side_tolerance) add_cut(cell, ends.target, seen);
-    for (int k = 0; k < face.outline.count; ++k) {
-      if (height > 0) {
-        edges_.push_back({face.outline[k], face.outline.next(k)});
-      } else {
-        edges_.push_back({face.outline.next(k), face.outline[k]});
-      }
-    }
-  } else {
-    unsigned front = 0;
-    for (int k = 0; k < occluder.face_count(); ++k) {
-      const Plane& plane = set_.faces[occluder.begin + k].plane;
-      const double height = side(span_along(cell, plane));
-      if (height <= side_tolerance) continue;
-      front |= 1u << k;
-      const Span span = span_along(ends.target, plane);
-      if (span.low >= -side_tolerance) return Cast::misses;
-      if (span.high > side_tolerance) add_cut(cell, ends.target, plane);
-    }
-    if (front == 0) return Cast::misses;
-    for (const BodyEdge& edge : occluder.edges) {
-      const bool left = front >> edge.face & 1u, right = front >> edge.neighbour & 1u;
-      if (left && !right) edges_.push_back({edge.p, edge.q});
-      if (right && !left) edges_.push_back({edge.q, edge.p});
+  const double height = side(span_along(cell, face.plane));
+  if (std::abs(height) <= side_tolerance) return Cast::misses;
+  const Plane seen = height > 0 ? face.plane : face.plane.flipped();
+  const Span span = span_along(ends.target, seen);
+  if (span.low >= -side_tolerance) return Cast::misses;
+  if (span.high > side_tolerance) add_cut(cell, ends.target, seen);
+  for (int k = 0; k < face.outline.count; ++k) {
+    if (height > 0) {
+      edges_.push_back({face.outline[k], face.outline.next(k)});
+    } else {
+      edges_.push_back({face.outline.next(k), face.outline[k]});
     }
   }
+  return keep_relevant();
+}
 
-  // an edge matters where some line of sight passes it on the one side and some on the other
+HiddenPair::Cast HiddenPair::cast_body(const Polygon& cell, const Ends& ends, const Occluder& body) {
+  edges_.clear();
+  cuts_.clear();
+  unsigned front = 0;
+  for (int k = 0; k < body.face_count(); ++k) {
+    const Plane& plane = set_.faces[body.begin + k].plane;
+    const double height = side(span_along(cell, plane));
+    if (height <= side_tolerance) continue;
+    front |= 1u << k;
+    const Span span = span_along(ends.target, plane);
+    if (span.low >= -side_tolerance) return Cast::misses;
+    if (span.high > side_tolerance) add_cut(cell, ends.target, plane);
+  }
+  if (front == 0) return Cast::misses;
+  for (const BodyEdge& edge : body.edges) {
+    const bool left = front >> edge.face & 1u, right = front >> edge.neighbour & 1u;
+    if (left && !right) edges_.push_back({edge.p, edge.q});
+    if (right && !left) edges_.push_back({edge.q, edge.p});
+  }
+  return keep_relevant();
+}
+
+// Span of the volumes of an edge with all lines of sight: positive where they pass it on the inside.
+Span HiddenPair::volumes(const ShadowEdge& edge) const {
+  const Vec3 along = (edge.q - edge.p).normalized(), moment = edge.p.cross(along);
+  Span span;
+  for (std::size_t k = 0; k < lines_.size(); ++k) {
+    const double volume = -(moment.dot(sights_[k]) + along.dot(lines_[k]));
+    span.low = std::min(span.low, volume);
+    span.high = std::max(span.high, volume);
+  }
+  return span;
+}
+
+// An edge matters where some line of sight passes it on the one side and some on the other.
+HiddenPair::Cast HiddenPair::keep_relevant() {
   const std::size_t first = shadows_.edges.size();
   for (const ShadowEdge& edge : edges_) {
-    const Vec3 along = (edge.q - edge.p).normalized(), moment = edge.p.cross(along);
-    double low = 0, high = 0;
-    for (std::size_t k = 0; k < lines_.size(); ++k) {
-      const double volume = -(moment.dot(sights_[k]) + along.dot(lines_[k]));
-      low = std::min(low, volume);
-      high = std::max(high, volume);
-    }
-    if (high <= volume_rounding) {
+    const Span span = volumes(edge);
+    if (span.high <= volume_rounding) {
       shadows_.edges.resize(first);
       return Cast::misses;
     }
-    if (low < -volume_rounding) shadows_.edges.push_back(edge);
+    if (span.low < -volume_rounding) shadows_.edges.push_back(edge);
   }
-  shadows_.edges.insert(shadows_.edges.end(), cuts_.begin(), cuts_.end());
+  // where the face stands on the target, its edge and the cut by its plane are one line: it counts once
+  const std::size_t first_cut = shadows_.edges.size();
+  for (const ShadowEdge& cut : cuts_) {
+    const bool known =
+        std::any_of(shadows_.edges.begin() + static_cast<std::ptrdiff_t>(first), shadows_.edges.end(),
+                    [&](const ShadowEdge& edge) { return on_line(edge, cut); });
+    if (!known) shadows_.edges.push_back(cut);
+  }
   if (shadows_.edges.size() == first) return Cast::everything;
   shadows_.begin.push_back(static_cast<int>(shadows_.edges.size()));
-  shadows_.cut.push_back(!cuts_.empty());
+  shadows_.cut.push_back(shadows_.edges.size() > first_cut);
   return Cast::shadow;
+}
+
+// A round body hides what lies in its cone of sight where all of it is on this side of the target's plane:
+// no line to the target then ends before it has met the body.
+HiddenPair::Cast HiddenPair::cast_round(const Polygon& cell, const Occluder& body) {
+  heights_.clear();
+  for (int f = body.begin; f < body.end; ++f) heights_.push_back(span_along(cell, set_.faces[f].plane));
+  const std::size_t first = shadows_.edges.size(), first_turning = shadows_.turning.size();
+  const auto misses = [&] {
+    shadows_.edges.resize(first);
+    shadows_.turning.resize(first_turning);
+    return Cast::misses;
+  };
+  for (const BodyEdge& edge : body.edges) {
+    const Span &left = heights_[static_cast<std::size_t>(edge.face)],
+               &right = heights_[static_cast<std::size_t>(edge.neighbour)];
+    const bool forward = left.high > 0 && right.low <= 0, backward = right.high > 0 && left.low <= 0;
+    if (!forward && !backward) continue;
+    const ShadowEdge as_forward{edge.p, edge.q};
+    const Span span = volumes(as_forward);
+    const bool turns = !(left.low > 0 && right.high <= 0) && !(right.low > 0 && left.high <= 0);
+    if (!turns && (forward ? span.high : -span.low) <= volume_rounding) return misses();
+    const bool bounds = (forward && span.low < -volume_rounding) || (backward && span.high > volume_rounding);
+    if (!bounds) continue;
+    const auto number = static_cast<int>(shadows_.edges.size());
+    if (turns) {
+      shadows_.turning.push_back(
+          {number, set_.faces[body.begin + edge.face].plane, set_.faces[body.begin + edge.neighbour].plane});
+    }
+    shadows_.edges.push_back(turns || forward ? as_forward : ShadowEdge{edge.q, edge.p});
+  }
+  if (shadows_.edges.size() == first) return Cast::everything;
+  shadows_.begin.push_back(static_cast<int>(shadows_.edges.size()));
+  shadows_.cut.push_back(0);
+  return Cast::shadow;
+}
+
+HiddenPair::Cast HiddenPair::cast(const Polygon& cell, const Ends& ends, const Occluder& occluder) {
+  if (!occluder.body()) return cast_face(cell, ends, set_.faces[occluder.begin]);
+  if (!occluder.round()) return cast_body(cell, ends, occluder);
+  const Side of_target = side_of_plane(occluder, ends.inner->plane);
+  if (of_target == Side::behind) return Cast::misses;
+  if (of_target == Side::front) return cast_round(cell, occluder);
+  // the target's plane runs through the body: face by face
+  Cast all = Cast::misses;
+  for (int f = occluder.begin; f < occluder.end; ++f) {
+    const Cast one = cast_face(cell, ends, set_.faces[f]);
+    if (one == Cast::everything) return one;
+    if (one == Cast::shadow) all = one;
+  }
+  return all;
 }
 
 HiddenPair::Cast HiddenPair::cast_all(const Polygon& cell, const Ends& ends,
@@ -225,7 +337,8 @@ HiddenPart HiddenPair::operator()(int s, int t, const std::vector<Candidate>& ca
     HiddenQuadrature quadrature(pair.target, normal, shadows_, workspace_);
     const double allowed = tolerance * std::sqrt(share);
     HiddenIntegral integral;
-    if (tolerance > cut_first * unhidden) {
+    // the silhouette of a round body makes events everywhere, each of them slight
+    if (tolerance > cut_first * unhidden || !shadows_.turning.empty()) {
       integral = quadrature.adaptive(std::span(&cell, 1), area(cell, normal), allowed);
     } else {
       const std::vector<Polygon> smooth =

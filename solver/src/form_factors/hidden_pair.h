@@ -45,6 +45,11 @@ class HiddenPair {
   std::vector<Polygon> cells_by_side(const Ends& ends, const std::vector<Candidate>& candidates) const;
   Cast cast_all(const Polygon& cell, const Ends& ends, const std::vector<Candidate>& candidates);
   Cast cast(const Polygon& cell, const Ends& ends, const Occluder& occluder);
+  Cast cast_face(const Polygon& cell, const Ends& ends, const OccluderFace& face);
+  Cast cast_body(const Polygon& cell, const Ends& ends, const Occluder& body);
+  Cast cast_round(const Polygon& cell, const Occluder& body);
+  Span volumes(const ShadowEdge& edge) const;
+  Cast keep_relevant();
   bool add_cut(const Polygon& cell, const Polygon& target, const Plane& behind);
 
   const PatchMesh& mesh_;
@@ -52,7 +57,9 @@ class HiddenPair {
   const OccluderSet& set_;
   Shadows shadows_;
   HiddenWorkspace workspace_;
+  std::vector<int> round_body_;  // of each polygon the round body that it is part of, or -1
   std::vector<ShadowEdge> edges_, cuts_;
+  std::vector<Span> heights_;
   std::vector<Vec3> lines_, sights_;
 };
 

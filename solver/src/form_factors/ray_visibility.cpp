@@ -11,8 +11,8 @@ namespace luxel {
 
 namespace {
 
-// Rays of a pair: the first lot, and the most that any pair gets.
-constexpr int first_rays = 6;
+// Rays of a pair, powers of two: the first lot, and the most that any pair gets.
+constexpr int first_rays = 8;
 constexpr int most_rays = 1 << 16;
 
 // A pair while its rays are under way.

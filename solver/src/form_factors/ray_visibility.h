@@ -25,7 +25,7 @@ struct RayShare {
 
 // Quasi-random lines leave an error of share_error_constant sqrt(p (1 - p)) N^-share_error_order in a share
 // p: measured on partly hidden pairs of rotated boxes against clipping.
-constexpr double share_error_constant = 1.5;
+constexpr double share_error_constant = 1.25;
 constexpr double share_error_order = 0.7;
 
 // Most pairs that come to rays are wholly visible or wholly hidden after all: the share of a pair has the

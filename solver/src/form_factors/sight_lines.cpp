@@ -3,8 +3,11 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "form_factors/occluder_set.h"
+#include "sampling/owen_sobol.h"
+#include "sampling/sobol_words.h"
 
 namespace luxel {
 
@@ -14,20 +17,12 @@ namespace {
 // coordinate in float (6e-8) and of a plane through such corners, below the thinnest wall (1e-6).
 constexpr double surface_offset = 4e-7;
 
-// Powers of 1 / g, g the real root of x^5 = x + 1: the additive recurrence of lowest discrepancy known in
-// four dimensions (Roberts 2018).
-constexpr std::array<double, 4> recurrence{0.8566748838545029, 0.7338918566271260, 0.6287067210378087,
-                                           0.5385972572236101};
+// Points of the sequence that are kept at hand; hardly a pair needs more.
+constexpr int kept_points = 4096;
 
-std::uint64_t mixed(std::uint64_t x) {  // splitmix64, Steele, Lea and Flood 2014
-  x += 0x9e3779b97f4a7c15u;
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-  return x ^ (x >> 31);
-}
-
-double unit(std::uint64_t x) {
-  return static_cast<double>(x >> 11) * 0x1p-53;
+const std::vector<std::uint32_t>& kept_words() {
+  static const std::vector<std::uint32_t> words = reversed_sobol_words(kept_points);
+  return words;
 }
 
 // Point of a convex polygon: with the density of the bilinear map for quads, whose area element is in
@@ -78,17 +73,22 @@ SightLine sight_line(const WorkPatch& a, const Vec3& from, const WorkPatch& b, c
           along_a * along_b / (squared * squared)};
 }
 
-SightLines::SightLines(const WorkPatch& a, const WorkPatch& b, std::uint64_t seed) : a_(&a), b_(&b) {
+SightLines::SightLines(const WorkPatch& a, const WorkPatch& b, std::uint64_t seed)
+    : a_(&a), b_(&b), words_(kept_words().data()) {
   const auto i = static_cast<std::uint64_t>(a.patch), j = static_cast<std::uint64_t>(b.patch);
-  std::uint64_t state = mixed(seed ^ mixed(i << 32 | j));
-  for (double& shift : shift_) shift = unit(state = mixed(state));
+  seed_ = mixed_seed(seed, i << 32 | j);
+  const std::uint64_t more = mixed_seed(seed_, 1);
+  seeds_ = {static_cast<std::uint32_t>(seed_), static_cast<std::uint32_t>(seed_ >> 32),
+            static_cast<std::uint32_t>(more), static_cast<std::uint32_t>(more >> 32)};
 }
 
 SightLine SightLines::operator[](int k) const {
   std::array<double, 4> u;
-  for (std::size_t c = 0; c < 4; ++c) {
-    const double x = shift_[c] + k * recurrence[c];
-    u[c] = x - std::floor(x);
+  if (k < kept_points) {
+    const std::uint32_t* words = words_ + 4 * static_cast<std::size_t>(k);
+    for (std::size_t c = 0; c < 4; ++c) u[c] = bits_reversed(LaineKarras{}(words[c], seeds_[c])) * 0x1p-32;
+  } else {
+    u = OwenSobol4(seed_)(static_cast<std::uint32_t>(k));
   }
   const PatchPoint x = point_on(a_->outline, u[0], u[1]), y = point_on(b_->outline, u[2], u[3]);
   SightLine line = sight_line(*a_, x.at, *b_, y.at);

@@ -16,8 +16,8 @@ struct SightLine {
 /// The line between a point of each of two patches.
 SightLine sight_line(const WorkPatch& a, const Vec3& from, const WorkPatch& b, const Vec3& to);
 
-/// Lines of sight of one pair, each between two points of one quasi-random sequence in four dimensions that
-/// the seed and the pair shift. Holds pointers to the two patches.
+/// Lines of sight of one pair: between two points each of a Sobol sequence in four dimensions, scrambled by
+/// the seed and the pair. Holds pointers to the two patches.
 class SightLines {
  public:
   SightLines(const WorkPatch& a, const WorkPatch& b, std::uint64_t seed);
@@ -27,7 +27,9 @@ class SightLines {
  private:
   const WorkPatch* a_;
   const WorkPatch* b_;
-  std::array<double, 4> shift_;
+  const std::uint32_t* words_;
+  std::uint64_t seed_;
+  std::array<std::uint32_t, 4> seeds_;
 };
 
 /// Likewise between what each of the two sees of the other. Where neither straddles the other's plane these
