@@ -220,6 +220,23 @@ TEST(Visibility, ClosesRoomsWithBoxesToTheAccuracyAsked) {
   }
 }
 
+TEST(Visibility, ClosesRoomsWithRoundBodiesToTheAccuracyAsked) {
+  // two prisms, planes of whose sides and ends run through each other; the box beside them overlaps their
+  // shadows
+  SceneBuilder scene;
+  scene.box({0, 0, 0}, {1, 1, 1}, Eigen::Matrix3d::Identity(), 2, true);
+  scene.prism({0.2, 0.3, 0.3}, {0.45, 0.4, 0.5}, 0.12, 17);
+  scene.prism({0.5, 0.75, 0.15}, {0.55, 0.7, 0.85}, 0.1, 18);
+  scene.box({0.7, 0.2, 0.4}, {0.85, 0.4, 0.7}, turned(0.3, 0.5, 0.7), 2, false);
+  const PatchMesh mesh = scene.take();
+  for (double accuracy : {1e-2, 1e-3, 1e-5}) {
+    const RowErrors errors = row_errors(factors(mesh, accuracy), mesh);
+
+    EXPECT_LE(errors.rms, accuracy);
+    EXPECT_LE(errors.max, 2 * accuracy);
+  }
+}
+
 TEST(Visibility, ClosesARoomWithABoxOnItsUnsplitFloor) {
   SceneBuilder scene;
   scene.box({0, 0, 0}, {1, 1, 1}, Eigen::Matrix3d::Identity(), 5, true);

@@ -24,6 +24,10 @@ constexpr int deepest = 12;
 
 constexpr int highest_order = 4;
 
+// A corner that differs from all points of the rules has about this share of the part's area: a cone over a
+// third of two of its sides.
+constexpr double corner_share = 0.05;
+
 // What a sum of arcs around a hidden polygon loses to rounding, and a patch to the gap between welded faces.
 constexpr double covered_rounding = 1e-9;
 
@@ -138,7 +142,24 @@ HiddenIntegral HiddenQuadrature::smooth(std::span<const Polygon> cells, double u
   return sum;
 }
 
-HiddenIntegral HiddenQuadrature::adaptive(std::span<const Polygon> cells, double whole, double tolerance) {
+// Where none of the rules' points sees anything hidden: the largest hidden share at a corner. Where all see
+// everything hidden: the largest share that is left. Else 0.
+double HiddenQuadrature::corner_excess(std::size_t begin, std::size_t corners, std::size_t end) const {
+  const auto largest = [&](const auto& excess) {
+    for (std::size_t k = begin; k < corners; ++k) {
+      if (excess(k) > 0) return 0.0;
+    }
+    double found = 0;
+    for (std::size_t k = corners; k < end; ++k) found = std::max(found, excess(k));
+    return found;
+  };
+  return std::max(largest([&](std::size_t k) { return shares_[k]; }),
+                  largest([&](std::size_t k) { return left_over(k); }));
+}
+
+HiddenIntegral HiddenQuadrature::adaptive(std::span<const Polygon> cells, double whole, double tolerance,
+                                          int halvings) {
+  const bool watch_corners = !shadows_.turning.empty();
   struct Part {
     Polygon cell;
     int depth;
@@ -154,6 +175,7 @@ HiddenIntegral HiddenQuadrature::adaptive(std::span<const Polygon> cells, double
     points_.clear();
     for (const Part& part : parts) {
       add_rule_pair(part.cell, points_);
+      if (watch_corners) add_corners(part.cell, points_);
     }
     hidden_shares(points_, normal_, inner_, shadows_, workspace_, shares_);
     sum.points += static_cast<std::int64_t>(points_.size());
@@ -167,9 +189,13 @@ HiddenIntegral HiddenQuadrature::adaptive(std::span<const Polygon> cells, double
         second += points_.weight[at + half + k] * shares_[at + half + k];
         size += points_.weight[at + k];
       }
-      at += 2 * half;
+      const std::size_t rules = at + 2 * half, end = watch_corners ? rules + half : rules;
       const double error = 0.5 * std::abs(first - second), allowed = tolerance * std::sqrt(size / whole);
-      if (error > allowed && part.depth < deepest) {
+      const bool stands_out =
+          watch_corners && error <= allowed && corner_share * size * corner_excess(at, rules, end) > allowed;
+      at = end;
+      const bool too_early = part.depth < halvings;
+      if ((error > allowed || stands_out || too_early) && part.depth < deepest) {
         const HalvedCells smaller = halve(part.cell, centroid(part.cell));
         put(next, smaller.first, part.depth + 1);
         put(next, smaller.second, part.depth + 1);
@@ -183,14 +209,19 @@ HiddenIntegral HiddenQuadrature::adaptive(std::span<const Polygon> cells, double
   return sum;
 }
 
+double HiddenQuadrature::left_over(std::size_t k) const {
+  const std::span corners(inner_.corners.data(), static_cast<std::size_t>(inner_.count));
+  const Vec3 eye(points_.x[k], points_.y[k], points_.z[k]);
+  const double all = point_form_factor(eye, normal_, corners);
+  return shares_[k] >= (1 - covered_rounding) * all ? 0 : all - shares_[k];
+}
+
 bool HiddenQuadrature::cover(const Polygon& cell) {
   points_.clear();
   add_points(cell, 3, points_);
   hidden_shares(points_, normal_, inner_, shadows_, workspace_, shares_);
-  const std::span corners(inner_.corners.data(), static_cast<std::size_t>(inner_.count));
   for (std::size_t k = 0; k < shares_.size(); ++k) {
-    const Vec3 eye(points_.x[k], points_.y[k], points_.z[k]);
-    if (shares_[k] < (1 - covered_rounding) * point_form_factor(eye, normal_, corners)) return false;
+    if (left_over(k) > 0) return false;
   }
   return true;
 }

@@ -32,13 +32,17 @@ class HiddenQuadrature {
   /// @param tolerance  of the whole patch's integral
   HiddenIntegral smooth(std::span<const Polygon> cells, double unhidden, double area, double tolerance);
 
-  /// Over cells that may hold kinks: two rules of equal degree side by side, halved where they disagree.
-  HiddenIntegral adaptive(std::span<const Polygon> cells, double area, double tolerance);
+  /// Over cells that may hold kinks: two rules of equal degree side by side, halved where they disagree, and
+  /// where round bodies hide all or nothing from the rules' points but not from a corner.
+  /// @param halvings  at least so many, however well the rules agree
+  HiddenIntegral adaptive(std::span<const Polygon> cells, double area, double tolerance, int halvings = 0);
 
   /// Whether the shadows hide the inner polygon as a whole from every point of a rule over the cell.
   bool cover(const Polygon& cell);
 
  private:
+  double left_over(std::size_t point) const;
+  double corner_excess(std::size_t begin, std::size_t corners, std::size_t end) const;
   double distance_to_edges(const Vec3& point) const;
   void place(const Polygon& cell, double unhidden, double area, double tolerance, int depth);
 

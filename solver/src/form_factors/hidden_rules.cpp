@@ -155,6 +155,12 @@ void add_rule_pair(const Polygon& c, OuterPoints& points) {
   }
 }
 
+void add_corners(const Polygon& cell, OuterPoints& points) {
+  constexpr double inwards = 1e-6;
+  const Vec3 middle = centroid(cell);
+  for (int k = 0; k < cell.count; ++k) points.add(cell[k] + inwards * (middle - cell[k]), 0);
+}
+
 std::vector<Polygon> triangles_and_quads(const Polygon& cell) {
   std::vector<Polygon> parts;
   auto add = [&parts](const auto& corners) {

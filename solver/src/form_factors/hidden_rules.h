@@ -17,6 +17,9 @@ void add_points(const Polygon& cell, int order, OuterPoints& points);
 /// far the integrand is from smooth.
 void add_rule_pair(const Polygon& triangle_or_quad, OuterPoints& points);
 
+/// Its corners, moved inwards by 1e-6 of the way to its middle, with weight 0.
+void add_corners(const Polygon& cell, OuterPoints& points);
+
 /// The triangles and quads of a fan around the first corner.
 std::vector<Polygon> triangles_and_quads(const Polygon& cell);
 

@@ -117,6 +117,17 @@ void bound(Occluder& occluder, std::span<const OccluderFace> faces) {
 
 }  // namespace
 
+Side side_of_plane(const Occluder& round_body, const Plane& plane) {
+  bool front = false, behind = false;
+  for (const Vec3& x : round_body.vertices) {
+    const double height = plane.distance(x);
+    front |= height > side_tolerance;
+    behind |= height < -side_tolerance;
+    if (front && behind) return Side::both;
+  }
+  return front ? Side::front : Side::behind;
+}
+
 std::vector<Occluder> join_bodies(std::vector<OccluderFace>& faces, const ClusterTree& tree,
                                   const PatchMesh& mesh) {
   const auto left = edges_of(faces);

@@ -51,6 +51,10 @@ struct Occluder {
   int face_count() const { return end - begin; }
 };
 
+/// On which side of a plane a round body lies, up to side_tolerance.
+enum class Side { front, behind, both };
+Side side_of_plane(const Occluder& round_body, const Plane& plane);
+
 /// Everything that can hide one patch from another, in working coordinates.
 struct OccluderSet {
   std::vector<OccluderFace> faces;
