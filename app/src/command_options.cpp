@@ -242,7 +242,7 @@ void add_full_precision(CLI::App& app, bool& full_precision) {
 void add_factor_tables(CLI::App& app, FactorsCommand& factors) {
   value_option(app, "--by", "WHAT", "group", "Form factors between what: group",
                [&factors](const std::string& text) {
-                 factors.by_group = text == "group";
+                 factors.by_group = factors.transport.form_factors.group_accuracy = text == "group";
                  return factors.by_group;
                })
       ->group(output);
