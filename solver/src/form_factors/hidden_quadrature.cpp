@@ -20,7 +20,7 @@ constexpr double gauss_constant = 0.1;
 
 // Cells are halved at most so often on their way to an edge that touches them; what is left then is
 // 2^-depth of the patch.
-constexpr int deepest = 16;
+constexpr int deepest = 12;
 
 constexpr int highest_order = 4;
 
