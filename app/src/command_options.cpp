@@ -209,9 +209,10 @@ void add_comparison(CLI::App& app, CompareCommand& compare) {
       ->group(solving);
   app.add_flag(
          "--operators", compare.operators,
-         wrapped("Also compare on a coarser and a finer operator (accuracy x 10 and / 10), and with half and "
-                 "twice the patches",
-                 description_width))
+         wrapped(
+             "Also compare on a gathered, a coarser and a finer operator (accuracy x 10 and / 10), and with "
+             "half and twice the patches",
+             description_width))
       ->group(transport);
   app.add_flag("--wall", compare.wall_time, "Plot errors against wall time instead of CPU time")
       ->group(output);
