@@ -18,6 +18,11 @@ constexpr double pair_share = 0.3;
 // (four standard deviations) stays below 2 A.
 constexpr double ray_share = 0.7;
 
+// Where factors between groups are asked for, the pairs of two groups share what their factor may be off: the
+// pair errors e_ij = A sqrt(G_ij G_IJ) times this add up to A G_IJ times this. Clipping's estimates are
+// bounds, those of rays standard errors. Factors below least_factor may err by as much as that one.
+constexpr double group_share = 0.5, group_ray_share = 0.3, least_factor = 1e-3;
+
 // Up to so many occluders between a pair, clipping is always the cheaper way.
 constexpr std::size_t few_occluders = 6;
 
@@ -42,7 +47,8 @@ constexpr double occluders_a_patch = 0.75;
 }  // namespace
 
 BlockedScene::BlockedScene(const PatchMesh& patch_mesh, const ClusterTree& cluster_tree,
-                           const OccluderSet& occluders, const FormFactorOptions& factor_options)
+                           const OccluderSet& occluders, const FormFactorOptions& factor_options,
+                           const ExchangeMatrix& unhidden)
     : mesh(patch_mesh), tree(cluster_tree), set(occluders), options(factor_options) {
   ends.reserve(tree.clusters.size());
   for (const Cluster& cluster : tree.clusters) {
@@ -52,6 +58,7 @@ BlockedScene::BlockedScene(const PatchMesh& patch_mesh, const ClusterTree& clust
   for (std::size_t k = 0; k < tree.clusters.size(); ++k) {
     if (tree.clusters[k].leaf()) leaf[tree.clusters[k].begin] = static_cast<int>(k);
   }
+  if (options.group_accuracy) groups = GroupExchange(mesh, tree, unhidden, least_factor);
   if (options.visibility == Visibility::exact) return;
   rays.emplace(set);
   sorter.emplace(tree, *rays, options.seed);
@@ -126,9 +133,16 @@ double BlockVisibility::unhidden(int s, int t) const {
   return exchange_(tree_.patches[s].patch, tree_.patches[t].patch) * tree_.scale * tree_.scale;
 }
 
-double BlockVisibility::tolerance(int s, int t, double exchange) const {
+BlockVisibility::Allowed BlockVisibility::allowed(int s, int t, double exchange) const {
   const double smaller = std::min(tree_.patches[s].area, tree_.patches[t].area);
-  return scene_.options.accuracy * std::sqrt(exchange * smaller);
+  const double in_row = scene_.options.accuracy * std::sqrt(exchange * smaller);
+  Allowed allowed{pair_share * in_row, ray_share * in_row};
+  if (!scene_.groups.empty()) {
+    const double in_group = scene_.options.accuracy * std::sqrt(exchange * scene_.groups.at(s, t));
+    allowed.clip = std::min(allowed.clip, group_share * in_group);
+    allowed.rays = std::min(allowed.rays, group_ray_share * in_group);
+  }
+  return allowed;
 }
 
 void BlockVisibility::sort_by_rays(int a, int b, const std::vector<Candidate>& candidates) {
@@ -137,13 +151,19 @@ void BlockVisibility::sort_by_rays(int a, int b, const std::vector<Candidate>& c
   std::vector<double> all(static_cast<std::size_t>(ca.size()) * columns);
   double total = 0;
   int facing = 0;
+  // the least that any pair's tolerance is of what its row would allow
+  double strictest = 1;
   for (int s = ca.begin; s < ca.end; ++s) {
     for (int t = cb.begin; t < cb.end; ++t) {
       const double exchange = unhidden(s, t);
       all[static_cast<std::size_t>(s - ca.begin) * columns + static_cast<std::size_t>(t - cb.begin)] =
           exchange;
+      if (!(exchange > 0)) continue;
       total += exchange;
-      facing += exchange > 0;
+      ++facing;
+      const double smaller = std::min(tree_.patches[s].area, tree_.patches[t].area);
+      const double in_row = ray_share * scene_.options.accuracy * std::sqrt(exchange * smaller);
+      strictest = std::min(strictest, allowed(s, t, exchange).rays / in_row);
     }
   }
   if (facing == 0) return;
@@ -151,7 +171,7 @@ void BlockVisibility::sort_by_rays(int a, int b, const std::vector<Candidate>& c
   for (double& exchange : asked) {
     if (exchange * facing > outstanding * total) exchange = 0;
   }
-  const BlockSights found = scene_.sorter->sort(a, b, asked, ray_share * scene_.options.accuracy);
+  const BlockSights found = scene_.sorter->sort(a, b, asked, strictest * ray_share * scene_.options.accuracy);
   tally_.rays += found.rays;
 
   // of what each row and column exchanges, the part that is in doubt
@@ -176,14 +196,17 @@ void BlockVisibility::sort_by_rays(int a, int b, const std::vector<Candidate>& c
         ++tally_.hidden;
         break;
       case Sight::part: {
-        const double doubt = std::max(part_rows[row] / rows[row], part_columns[column] / columns_sum[column]);
-        const double plain = ray_share * tolerance(s, t, all[k]);
-        sample_or_clip(s, t, all[k], std::max(plain, std::min(plain / std::sqrt(doubt), coarsest * all[k])),
-                       candidates);
+        double tolerance = allowed(s, t, all[k]).rays;
+        if (scene_.groups.empty()) {
+          const double doubt =
+              std::max(part_rows[row] / rows[row], part_columns[column] / columns_sum[column]);
+          tolerance = std::max(tolerance, std::min(tolerance / std::sqrt(doubt), coarsest * all[k]));
+        }
+        sample_or_clip(s, t, all[k], tolerance, candidates);
         break;
       }
       case Sight::unknown:
-        sample_or_clip(s, t, all[k], ray_share * tolerance(s, t, all[k]), candidates);
+        sample_or_clip(s, t, all[k], allowed(s, t, all[k]).rays, candidates);
         break;
     }
   }
@@ -220,15 +243,14 @@ void BlockVisibility::pair(int s, int t, const std::vector<Candidate>& candidate
   const double exchange = unhidden(s, t);
   if (!(exchange > 0)) return;
   ++tally_.partial;
-  const double allowed = pair_share * tolerance(s, t, exchange);
-  const double for_rays = ray_share * tolerance(s, t, exchange);
+  const auto [for_clip, for_rays] = allowed(s, t, exchange);
   if (scene_.options.visibility == Visibility::rays ||
       (scene_.options.visibility == Visibility::automatic &&
        rays_are_cheaper(candidates.size(), for_rays / exchange))) {
     sampled_.push_back({s, t, exchange, for_rays});
     return;
   }
-  const HiddenPart part = clip_(s, t, candidates, exchange, allowed);
+  const HiddenPart part = clip_(s, t, candidates, exchange, for_clip);
   ++tally_.exact;
   if (part.value > 0 || part.all) store(s, t, part.all ? 0 : exchange - part.value, part.error);
 }

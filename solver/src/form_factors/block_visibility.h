@@ -6,6 +6,7 @@
 
 #include "form_factors/block_sights.h"
 #include "form_factors/cluster_tree.h"
+#include "form_factors/group_exchange.h"
 #include "form_factors/hidden_pair.h"
 #include "form_factors/occluder_scene.h"
 #include "form_factors/occluder_set.h"
@@ -23,11 +24,13 @@ struct BlockedScene {
   const FormFactorOptions& options;
   std::vector<ShaftEnd> ends;         ///< of each cluster
   std::vector<int> leaf;              ///< of each patch its cluster
+  GroupExchange groups;               ///< where their factors are held to the accuracy too, else empty
   std::optional<OccluderScene> rays;  ///< not where everything is clipped
   std::optional<SightSorter> sorter;
 
+  /// @param unhidden  exchange areas with nothing between
   BlockedScene(const PatchMesh& patch_mesh, const ClusterTree& cluster_tree, const OccluderSet& occluders,
-               const FormFactorOptions& factor_options);
+               const FormFactorOptions& factor_options, const ExchangeMatrix& unhidden);
 };
 
 /// One block of the matrix, a pair of clusters, with the occluders that may matter in it.
@@ -65,7 +68,11 @@ class BlockVisibility {
   void sample_all();
   void store(int s, int t, double visible, double error);
   double unhidden(int s, int t) const;
-  double tolerance(int s, int t, double exchange) const;
+  // What the visible part of a pair may be off, by clipping and by rays; working units.
+  struct Allowed {
+    double clip, rays;
+  };
+  Allowed allowed(int s, int t, double exchange) const;
 
   const BlockedScene& scene_;
   const ClusterTree& tree_;

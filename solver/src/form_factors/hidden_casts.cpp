@@ -31,21 +31,22 @@ bool on_line(const ShadowEdge& edge, const ShadowEdge& cut) {
 bool HiddenPair::add_cut(const Polygon& cell, const Polygon& target, const Plane& behind) {
   Vec3 ends[2];
   int found = 0;
-  Vec3 inside = target[0];
-  double deepest = -1;
+  // the corner farthest from the plane, on either side of it, tells on which side of the cut it lies
+  Vec3 farthest = target[0];
+  double height = 0;
   for (int k = 0; k < target.count; ++k) {
     const double here = behind.distance(target[k]), there = behind.distance(target.next(k));
-    if (-here > deepest) {
-      deepest = -here;
-      inside = target[k];
+    if (std::abs(here) > std::abs(height)) {
+      height = here;
+      farthest = target[k];
     }
     if ((here >= 0) == (there >= 0)) continue;
     if (found < 2) ends[found++] = target[k] + (here / (here - there)) * (target.next(k) - target[k]);
   }
   if (found < 2 || (ends[1] - ends[0]).squaredNorm() < 1e-28) return false;
   const Vec3 eye = centroid(cell);
-  const double volume = (ends[1] - eye).cross(ends[0] - eye).dot(inside - eye);
-  if (volume < 0) std::swap(ends[0], ends[1]);
+  const double volume = (ends[1] - eye).cross(ends[0] - eye).dot(farthest - eye);
+  if ((volume < 0) == (height < 0)) std::swap(ends[0], ends[1]);
   cuts_.push_back({ends[0], ends[1]});
   return true;
 }
@@ -57,8 +58,9 @@ HiddenPair::Cast HiddenPair::cast_face(const Polygon& cell, const Ends& ends, co
   if (std::abs(height) <= side_tolerance) return Cast::misses;
   const Plane seen = height > 0 ? face.plane : face.plane.flipped();
   const Span span = span_along(ends.target, seen);
-  if (span.low >= -side_tolerance) return Cast::misses;
-  if (span.high > side_tolerance) add_cut(cell, ends.target, seen);
+  const double depth = touching_depth(*ends.inner);
+  if (span.low >= -depth) return Cast::misses;
+  if (span.high > depth) add_cut(cell, ends.target, seen);
   for (int k = 0; k < face.outline.count; ++k) {
     if (height > 0) {
       edges_.push_back({face.outline[k], face.outline.next(k)});
@@ -72,6 +74,7 @@ HiddenPair::Cast HiddenPair::cast_face(const Polygon& cell, const Ends& ends, co
 HiddenPair::Cast HiddenPair::cast_body(const Polygon& cell, const Ends& ends, const Occluder& body) {
   edges_.clear();
   cuts_.clear();
+  const double depth = touching_depth(*ends.inner);
   unsigned front = 0;
   for (int k = 0; k < body.face_count(); ++k) {
     const Plane& plane = set_.faces[body.begin + k].plane;
@@ -79,8 +82,8 @@ HiddenPair::Cast HiddenPair::cast_body(const Polygon& cell, const Ends& ends, co
     if (height <= side_tolerance) continue;
     front |= 1u << k;
     const Span span = span_along(ends.target, plane);
-    if (span.low >= -side_tolerance) return Cast::misses;
-    if (span.high > side_tolerance) add_cut(cell, ends.target, plane);
+    if (span.low >= -depth) return Cast::misses;
+    if (span.high > depth) add_cut(cell, ends.target, plane);
   }
   if (front == 0) return Cast::misses;
   for (const BodyEdge& edge : body.edges) {

@@ -14,6 +14,11 @@ namespace {
 // Parts of a patch below this share of its area are what clipping leaves of a common edge.
 constexpr double sliver_share = 1e-12;
 
+// A patch that reaches through a face's plane by less than this share of its width touches the plane: the
+// noise of files with six digits is of that size. What is taken for wholly visible then is that share of the
+// patch.
+constexpr double touching_share = 1e-7;
+
 // Cells that the planes of faces and the events may cut one patch into.
 constexpr std::size_t most_cells = 400;
 
@@ -25,11 +30,11 @@ constexpr double cut_first = 2e-3;
 constexpr double round_share = 0.5;
 constexpr int round_halvings = 4;
 
-// Where the integral says that this share of a cell's exchange is hidden, it is looked at whether all of it
-// is.
-constexpr double nearly_all = 0.9;
-
 }  // namespace
+
+double touching_depth(const WorkPatch& patch) {
+  return std::max(side_tolerance, touching_share * patch.area / patch.edge);
+}
 
 HiddenPair::HiddenPair(const PatchMesh& mesh, const ClusterTree& tree, const OccluderSet& set)
     : mesh_(mesh),
@@ -87,14 +92,14 @@ bool HiddenPair::own(const Occluder& occluder, const Ends& ends) const {
 std::vector<Polygon> HiddenPair::cells_by_side(const Ends& ends,
                                                const std::vector<Candidate>& candidates) const {
   std::vector<Polygon> cells{ends.cell};
-  const double length = ends.outer->edge;
+  const double length = ends.outer->edge, depth = touching_depth(*ends.outer);
   for (const Candidate& candidate : candidates) {
     const Occluder& occluder = set_.occluders[candidate.occluder];
     if (occluder.round() || own(occluder, ends)) continue;
     for (int f = occluder.begin; f < occluder.end; ++f) {
       const Plane& plane = set_.faces[f].plane;
       const Span span = span_along(ends.cell, plane);
-      if (span.low > -side_tolerance || span.high < side_tolerance || cells.size() >= most_cells) continue;
+      if (span.low > -depth || span.high < depth || cells.size() >= most_cells) continue;
       const double slant = plane.normal.cross(ends.outer->plane.normal).norm();
       const double tolerance = std::max(side_tolerance, 1e-9 * length * slant);
       std::vector<Polygon> parts;
@@ -110,6 +115,12 @@ std::vector<Polygon> HiddenPair::cells_by_side(const Ends& ends,
   return cells;
 }
 
+bool HiddenPair::covered(const Polygon& cell, const Ends& ends, const std::vector<Candidate>& candidates) {
+  const Cast cast = cast_all(cell, ends, candidates);
+  if (cast != Cast::shadow) return cast == Cast::everything;
+  return HiddenQuadrature(ends.target, ends.outer->plane.normal, shadows_, workspace_).cover(cell);
+}
+
 HiddenPart HiddenPair::operator()(int s, int t, const std::vector<Candidate>& candidates, double unhidden,
                                   double tolerance) {
   const Ends pair = ends(s, t, candidates);
@@ -119,7 +130,7 @@ HiddenPart HiddenPair::operator()(int s, int t, const std::vector<Candidate>& ca
   const double whole = area(pair.cell, normal);
   if (!(whole > sliver_share * pair.outer->area)) return part;
   const std::vector<Polygon> cells = cells_by_side(pair, candidates);
-  std::size_t dark = 0, covered = 0;
+  std::size_t dark = 0;
   for (const Polygon& cell : cells) {
     const double share = area(cell, normal) / whole;
     if (!(share > sliver_share)) {
@@ -139,27 +150,29 @@ HiddenPart HiddenPair::operator()(int s, int t, const std::vector<Candidate>& ca
     }
     HiddenQuadrature quadrature(pair.target, normal, shadows_, workspace_);
     // the silhouette of a round body makes events everywhere, each of them slight
-    const bool round = !shadows_.turning.empty();
+    const bool round = !shadows_.turning.empty(), tight = tolerance <= cut_first * unhidden;
     const double allowed = tolerance * std::sqrt(share) * (round ? round_share : 1);
     HiddenIntegral integral;
-    if (tolerance > cut_first * unhidden || round) {
-      const bool tight = round && tolerance <= cut_first * unhidden;
-      integral =
-          quadrature.adaptive(std::span(&cell, 1), area(cell, normal), allowed, tight ? round_halvings : 0);
+    if (round || !tight) {
+      integral = quadrature.kinked(std::span(&cell, 1), area(cell, normal), allowed,
+                                   round && tight ? round_halvings : 0);
     } else {
       const std::vector<Polygon> smooth =
           cut_by_events(cell, normal, pair.target, shadows_, pair.outer->edge, most_cells);
       integral = shadows_.count() == 1
                      ? quadrature.smooth(smooth, unhidden * share, area(cell, normal), allowed)
-                     : quadrature.adaptive(smooth, area(cell, normal), allowed);
+                     : quadrature.cut(smooth, area(cell, normal), allowed);
     }
-    // several occluders may hide together what none hides alone
-    if (integral.value > nearly_all * unhidden * share && quadrature.cover(cell)) ++covered;
     part.value += integral.value;
     part.error += integral.error;
   }
-  const bool rest_is_error = unhidden - part.value <= 4 * tolerance + part.error;
-  part.all = dark == cells.size() || (dark + covered == cells.size() && rest_is_error);
+  part.all = dark == cells.size();
+  // several occluders may hide together what none hides alone: what is left then is the integral's error
+  if (!part.all && unhidden - part.value <= 4 * tolerance + part.error) {
+    part.all = std::all_of(cells.begin(), cells.end(), [&](const Polygon& cell) {
+      return !(area(cell, normal) > sliver_share * whole) || covered(cell, pair, candidates);
+    });
+  }
   if (part.all) part.value = unhidden;
   part.value = std::clamp(part.value, 0.0, unhidden);
   return part;

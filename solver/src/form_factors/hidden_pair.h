@@ -19,6 +19,9 @@ struct HiddenPart {
   double error = 0;  ///< estimate
 };
 
+/// A patch that reaches through a face's plane by less than this touches the plane, in working units.
+double touching_depth(const WorkPatch& patch);
+
 /// Visibility of single pairs by clipping: exact in the inner patch, by quadrature over the outer one, which
 /// is cut where the view changes its shape. One per thread: it keeps its working memory.
 class HiddenPair {
@@ -50,6 +53,8 @@ class HiddenPair {
   Cast cast_round(const Polygon& cell, const Occluder& body);
   Span volumes(const ShadowEdge& edge) const;
   Cast keep_relevant();
+  // Whether nothing of the target is in sight from any point of a rule over the cell.
+  bool covered(const Polygon& cell, const Ends& ends, const std::vector<Candidate>& candidates);
   bool add_cut(const Polygon& cell, const Polygon& target, const Plane& behind);
 
   const PatchMesh& mesh_;

@@ -24,6 +24,10 @@ constexpr int deepest = 12;
 
 constexpr int highest_order = 4;
 
+// Cells may err by the square root of their share of the tolerance, as if their errors had either sign. Where
+// their sum shows that they do not, all is done again with less for each, at most so often.
+constexpr int attempts = 3;
+
 // A corner that differs from all points of the rules has about this share of the part's area: a cone over a
 // third of two of its sides.
 constexpr double corner_share = 0.05;
@@ -157,14 +161,31 @@ double HiddenQuadrature::corner_excess(std::size_t begin, std::size_t corners, s
                   largest([&](std::size_t k) { return left_over(k); }));
 }
 
-HiddenIntegral HiddenQuadrature::adaptive(std::span<const Polygon> cells, double whole, double tolerance,
-                                          int halvings) {
+HiddenIntegral HiddenQuadrature::kinked(std::span<const Polygon> cells, double whole, double tolerance,
+                                        int halvings) {
+  return halved_to(cells, whole, tolerance, add_equal_rules, halvings);
+}
+
+HiddenIntegral HiddenQuadrature::cut(std::span<const Polygon> cells, double whole, double tolerance) {
+  double each = tolerance;
+  HiddenIntegral sum = halved_to(cells, whole, each, add_nested_rules);
+  for (int attempt = 1; attempt < attempts && sum.error > tolerance; ++attempt) {
+    each *= 0.5 * tolerance / sum.error;
+    sum = halved_to(cells, whole, each, add_nested_rules);
+  }
+  return sum;
+}
+
+HiddenIntegral HiddenQuadrature::halved_to(std::span<const Polygon> cells, double whole, double tolerance,
+                                           RulePair (*add_rules)(const Polygon&, OuterPoints&),
+                                           int halvings) {
   const bool watch_corners = !shadows_.turning.empty();
   struct Part {
     Polygon cell;
     int depth;
   };
   std::vector<Part> parts, next;
+  std::vector<RulePair> rules;
   auto put = [](std::vector<Part>& into, const Polygon& cell, int depth) {
     for (const Polygon& part : triangles_and_quads(cell)) into.push_back({part, depth});
   };
@@ -173,34 +194,40 @@ HiddenIntegral HiddenQuadrature::adaptive(std::span<const Polygon> cells, double
   HiddenIntegral sum;
   while (!parts.empty()) {
     points_.clear();
+    rules.clear();
     for (const Part& part : parts) {
-      add_rule_pair(part.cell, points_);
+      rules.push_back(add_rules(part.cell, points_));
       if (watch_corners) add_corners(part.cell, points_);
     }
     hidden_shares(points_, normal_, inner_, shadows_, workspace_, shares_);
     sum.points += static_cast<std::int64_t>(points_.size());
     next.clear();
     std::size_t at = 0;
-    for (const Part& part : parts) {
-      const std::size_t half = part.cell.count == 4 ? 4 : 3;
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+      const Part& part = parts[p];
+      const RulePair& rule = rules[p];
       double first = 0, second = 0, size = 0;
-      for (std::size_t k = 0; k < half; ++k) {
-        first += points_.weight[at + k] * shares_[at + k];
-        second += points_.weight[at + half + k] * shares_[at + half + k];
-        size += points_.weight[at + k];
+      const std::size_t begin = at;
+      for (std::size_t k = 0; k < rule.first; ++k, ++at) {
+        first += points_.weight[at] * shares_[at];
+        size += points_.weight[at];
       }
-      const std::size_t rules = at + 2 * half, end = watch_corners ? rules + half : rules;
-      const double error = 0.5 * std::abs(first - second), allowed = tolerance * std::sqrt(size / whole);
-      const bool stands_out =
-          watch_corners && error <= allowed && corner_share * size * corner_excess(at, rules, end) > allowed;
-      at = end;
-      const bool too_early = part.depth < halvings;
-      if ((error > allowed || stands_out || too_early) && part.depth < deepest) {
+      for (std::size_t k = 0; k < rule.second; ++k, ++at) second += points_.weight[at] * shares_[at];
+      const double value = rule.trust * first + (1 - rule.trust) * second;
+      const double error = rule.trust * std::abs(first - second);
+      const double allowed = tolerance * std::sqrt(size / whole);
+      bool halve_it = error > allowed || part.depth < halvings;
+      if (watch_corners) {
+        const std::size_t end = at + static_cast<std::size_t>(part.cell.count);
+        halve_it = halve_it || corner_share * size * corner_excess(begin, at, end) > allowed;
+        at = end;
+      }
+      if (halve_it && part.depth < deepest) {
         const HalvedCells smaller = halve(part.cell, centroid(part.cell));
         put(next, smaller.first, part.depth + 1);
         put(next, smaller.second, part.depth + 1);
       } else {
-        sum.value += 0.5 * (first + second);
+        sum.value += value;
         sum.error += error;
       }
     }

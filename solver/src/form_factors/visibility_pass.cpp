@@ -110,7 +110,7 @@ void subtract_hidden(const PatchMesh& mesh, const ClusterTree& tree, const FormF
   for (const Occluder& occluder : set.occluders) report.occluders += occluder.face_count();
   if (set.occluders.empty()) return;
   const VisibilityTally tally =
-      VisibilityPass(BlockedScene(mesh, tree, set, options), exchange_areas).run(progress);
+      VisibilityPass(BlockedScene(mesh, tree, set, options, exchange_areas), exchange_areas).run(progress);
   report.hidden_pairs = tally.hidden;
   report.partial_pairs = tally.partial;
   report.exact_pairs = tally.exact;
