@@ -28,8 +28,8 @@ void compute(Assembly& assembly, const FormFactorOptions& options, bool raw, con
     assembly.transport = std::make_unique<DenseOperator>(std::move(factors.exchange_areas), mesh.areas);
     record.closure.before = record.closure.after = {assembly.rows.max, assembly.rows.rms};
   } else {
-    ClosedOperator closed =
-        close_rows(std::move(factors.exchange_areas), mesh.areas, record.enclosures, progress);
+    ClosedOperator closed = close_rows(std::move(factors.exchange_areas), mesh.areas, record.enclosures,
+                                       progress, most_correction * options.accuracy);
     assembly.transport = std::move(closed.transport);
     record.closure = closed.closure;
   }
@@ -133,6 +133,7 @@ Assembly assemble(const SceneOptions& scene, const OperatorOptions& options, con
 
 bool accuracy_reached(const Assembly& assembly, bool largest_too) {
   const double accuracy = assembly.record.options.accuracy;
+  if (assembly.record.closure.unclosed >= 0) return false;
   return assembly.rows.certain_rms <= accuracy && (!largest_too || assembly.rows.certain_max <= 2 * accuracy);
 }
 
