@@ -38,7 +38,7 @@ constexpr double coarse = 0.02;
 constexpr double coarsest = 0.1;
 
 // Pairs that exchange so many times the mean of their block are looked at by themselves.
-constexpr double outstanding = 8;
+constexpr double outstanding = 2;
 
 // Blocks are handed to rays as a whole where so many occluders stand in the way for each patch of a side:
 // where there are fewer, smaller blocks have fewer still.
