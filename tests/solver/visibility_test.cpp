@@ -276,12 +276,14 @@ PatchMesh room_with_leaves() {
 TEST(Visibility, ClosesARoomFullOfLeavesToTheAccuracyAsked) {
   const PatchMesh mesh = room_with_leaves();
 
-  const FormFactors f = factors(mesh, 1e-3);
+  for (double accuracy : {1e-2, 1e-3}) {
+    const FormFactors f = factors(mesh, accuracy);
 
-  const RowErrors errors = row_errors(f, mesh);
-  EXPECT_LE(errors.rms, 1e-3);
-  EXPECT_LE(errors.max, 2e-3);
-  EXPECT_GT(f.report.rays, 0);
+    const RowErrors errors = row_errors(f, mesh);
+    EXPECT_LE(errors.rms, accuracy);
+    EXPECT_LE(errors.max, 2 * accuracy);
+    EXPECT_GT(f.report.rays, 0);
+  }
 }
 
 TEST(Visibility, CutsTheFloorWhereAWallStandsOnIt) {
