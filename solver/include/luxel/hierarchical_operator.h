@@ -95,7 +95,7 @@ struct HierarchicalSolution {
 /// all over each finish, on the patches otherwise; the irradiance is expanded to the patches once, at the
 /// end. The same input and seed give the same bits for any number of threads.
 /// @param solving  method, tolerance, bounces and callbacks of the iteration; its tolerance is raised to a
-/// hundredth of the accuracy, since less is lost in the blocks; radiosity in callbacks is that of the nodes
+/// hundredth of the accuracy, since less is lost in the blocks; callbacks get no radiosity where nodes are iterated on
 /// @throws SingularSystem; std::invalid_argument; Cancelled
 HierarchicalSolution solve_hierarchical(const PatchMesh& mesh, const Enclosures& enclosures,
                                         const PatchField& reflectance, const PatchField& emission,

@@ -87,6 +87,7 @@ void gather_flat_groups(PatchHierarchy& hierarchy, const Enclosures& enclosures)
                                           hierarchy.order.data() + ends[g + 1]));
     hierarchy.groups.back().finish = mesh.finishes[first_patches[g]];
     const int enclosure = enclosures.enclosure[first_patches[g]];
+    hierarchy.groups.back().enclosure = enclosure;
     hierarchy.groups.back().closed = enclosures.enclosure_closed[enclosure] != 0;
   }
 }

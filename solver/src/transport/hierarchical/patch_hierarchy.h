@@ -58,6 +58,7 @@ struct FlatGroup {
   Vec3 u, v, normal;
   double offset = 0;
   int finish = 0;
+  int enclosure = 0;
   bool closed = false;  ///< its enclosure is
 };
 

@@ -1,0 +1,287 @@
+#include "transport/hierarchical/block_assembly.h"
+
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "form_factors/pair.h"
+#include "form_factors/shaft.h"
+#include "stage_progress.h"
+#include "transport/hierarchical/block_end.h"
+#include "transport/hierarchical/block_rays.h"
+
+namespace luxel {
+
+namespace {
+
+// Tasks in the fixed list: enough to keep many cores busy to the end.
+constexpr std::size_t task_count = 4096;
+
+// Bilinear interpolation of the kernel between ends of radii r and s at distance d errs by about this times
+// ((r + s) / d)^2 of it.
+constexpr double interpolation_error = 0.06;
+
+// Ends nearer than this, (r + s) / d, are too close for the nodes to tell the kernel; what they exchange is
+// then uncertain by this share of it.
+constexpr double touching_ratio = 0.8;
+constexpr double touching_error = 0.25;
+
+// Nearer single patches get an exact kernel.
+constexpr double near_ratio = 0.5;
+
+// An end partly behind the other's horizon: the kernel has a kink.
+constexpr double straddling_error = 0.1;
+constexpr double straddling_depth = 1e-7;
+
+// What a block with some occluder between may err by before rays are cast, after they agreed, and where they
+// do not, beside their own standard error.
+constexpr double unknown_error = 0.04;
+constexpr double agreed_error = 0.04;
+constexpr double mixed_error = 0.25;
+
+// Rays: the first lot, and the most that two single patches get.
+constexpr int first_rays = 16;
+constexpr int most_rays = 256;
+
+// A side is taken for constant where that changes the irradiance by less than this share of the block's
+// error.
+constexpr double collapse_share = 0.15;
+
+// An exact pair of patches may err by this share of the block's error.
+constexpr double near_share = 0.1;
+
+using Candidates = std::vector<Candidate>;
+
+class Assembly {
+ public:
+  Assembly(const PatchHierarchy& hierarchy, const HidingScene& scene, const Brightness& brightness,
+           const AssemblyOptions& options)
+      : hierarchy_(hierarchy),
+        scene_(scene),
+        brightness_(brightness),
+        options_(options),
+        hiding_(scene.rays != nullptr),
+        rays_(hierarchy, hiding_ ? scene.rays->scene() : nullptr, options.seed) {}
+
+  std::vector<BlockList> run(const Progress& progress) {
+    std::vector<BlockList> lists(1);
+    std::vector<Task> tasks{
+        {hierarchy_.root, hierarchy_.root, hiding_ ? all_candidates(scene_.occluders) : Candidates()}};
+    while (!tasks.empty() && tasks.size() < task_count) {
+      std::vector<Task> next;
+      for (const Task& task : tasks) run(task, lists[0], &next);
+      tasks = std::move(next);
+    }
+    lists.resize(tasks.size() + 1);
+    StageProgress stage(progress, "blocks", std::max<double>(1, static_cast<double>(tasks.size())));
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(0, tasks.size(), 1),
+        [&](const tbb::blocked_range<std::size_t>& range) {
+          for (std::size_t k = range.begin(); k < range.end(); ++k) {
+            if (stage.cancelled()) return;
+            run(tasks[k], lists[k + 1], nullptr);
+            stage.add(1);
+          }
+        },
+        tbb::simple_partitioner());
+    stage.finish();
+    return lists;
+  }
+
+ private:
+  struct Task {
+    int r, s;
+    Candidates candidates;
+  };
+
+  void run(const Task& task, BlockList& list, std::vector<Task>* deferred) const {
+    const BlockEnd r = block_end(hierarchy_, task.r, hiding_);
+    if (task.r == task.s) {
+      within(r, task.candidates, list, deferred);
+    } else {
+      between(r, block_end(hierarchy_, task.s, hiding_), task.candidates, list, deferred);
+    }
+  }
+
+  // Pairs inside one cluster.
+  void within(const BlockEnd& r, const Candidates& candidates, BlockList& list,
+              std::vector<Task>* deferred) const {
+    if (r.bounds.planar) return;
+    const PatchCluster& cluster = hierarchy_.clusters[r.cluster];
+    for (int i = 0; i < cluster.child_count; ++i) {
+      for (int j = 0; j <= i; ++j) {
+        const Task task{cluster.children[i], cluster.children[j], candidates};
+        deferred ? deferred->push_back(task) : run(task, list, nullptr);
+      }
+    }
+  }
+
+  void divide(const BlockEnd& r, const BlockEnd& s, const Candidates& candidates, BlockList& list,
+              std::vector<Task>* deferred) const {
+    const bool first = !r.single && (s.single || r.bounds.radius >= s.bounds.radius);
+    const PatchCluster& cluster = hierarchy_.clusters[first ? r.cluster : s.cluster];
+    for (int k = 0; k < cluster.child_count; ++k) {
+      const int child = cluster.children[k];
+      if (deferred) {
+        deferred->push_back(first ? Task{child, s.cluster, candidates} : Task{r.cluster, child, candidates});
+      } else if (first) {
+        between(block_end(hierarchy_, child, hiding_), s, candidates, list, nullptr);
+      } else {
+        between(r, block_end(hierarchy_, child, hiding_), candidates, list, nullptr);
+      }
+    }
+  }
+
+  void between(const BlockEnd& r, const BlockEnd& s, const Candidates& inherited, BlockList& list,
+               std::vector<Task>* deferred) const {
+    const Span over_r = heights_over(r.bounds, s.bounds);
+    if (over_r.high <= plane_tolerance) return;
+    const Span over_s = heights_over(s.bounds, r.bounds);
+    if (over_s.high <= plane_tolerance) return;
+    ShaftCandidates candidates;
+    if (!inherited.empty()) {
+      candidates = candidates_in_shaft(r.shaft, s.shaft, scene_.occluders, inherited);
+      if (candidates.hidden) {
+        ++list.hidden;
+        return;
+      }
+    }
+    const bool single = r.single && s.single;
+    if (!single && !(r.usable && s.usable)) {
+      divide(r, s, candidates.list, list, deferred);
+      return;
+    }
+
+    const BlockKernel kernel = block_kernel(r, s);
+    const double apart = (r.bounds.centre - s.bounds.centre).norm();
+    const double ratio = (r.bounds.radius + s.bounds.radius) / std::max(apart, 1e-300);
+    const double bright_r = brightness_(hierarchy_, r.cluster), bright_s = brightness_(hierarchy_, s.cluster);
+    double share = kernel.largest;  // of form factor per area of the other end
+    if (ratio > touching_ratio) {
+      share =
+          std::max(share, std::min(4 / (std::numbers::pi * apart * apart), 0.25 / std::min(r.area, s.area)));
+    }
+    const double weight =
+        std::max(std::min(share * s.area, 1.0) * bright_s, std::min(share * r.area, 1.0) * bright_r);
+    const bool straddles = over_r.low < -straddling_depth || over_s.low < -straddling_depth;
+    double error = ratio > touching_ratio ? touching_error : interpolation_error * ratio * ratio;
+    if (straddles) error = std::max(error, straddling_error);
+    error += r.roughness + s.roughness;
+
+    const double allowed = options_.block_error / std::max(weight, 1e-300);
+    if (!single && error > allowed) {
+      divide(r, s, candidates.list, list, deferred);
+      return;
+    }
+    RayCount rays;
+    if (!candidates.list.empty()) {
+      if (!single && unknown_error > allowed) {
+        divide(r, s, candidates.list, list, deferred);
+        return;
+      }
+      rays_.cast(r, s, first_rays, rays);
+      if (single) {
+        while (rays.error() > allowed && rays.all < most_rays) rays_.cast(r, s, 2 * rays.all, rays);
+      } else if ((rays.unanimous() ? agreed_error : mixed_error) > allowed) {
+        list.rays += rays.all;
+        divide(r, s, candidates.list, list, deferred);
+        return;
+      }
+      list.rays += rays.all;
+      if (rays.visible == 0) {
+        ++list.hidden;
+        return;
+      }
+      error += rays.error();
+    } else {
+      ++list.unhidden;
+    }
+    const double area =
+        r.area * std::pow(share * s.area * bright_s, 2) + s.area * std::pow(share * r.area * bright_r, 2);
+    list.squared_error += area * error * error;
+    if (single && ratio > near_ratio) {
+      store_near(r, s, rays.share(),
+                 std::min(near_share * options_.block_error / std::max(bright_r, bright_s), near_share),
+                 list);
+    } else {
+      store(r, s, kernel, rays, bright_r, bright_s, list);
+    }
+  }
+
+  // Single patches whose nodes are too far apart for the kernel between them.
+  void store_near(const BlockEnd& r, const BlockEnd& s, double visible, double tolerance,
+                  BlockList& list) const {
+    const Polygon p = clip(r.bounds.hull, s.bounds.plane, plane_tolerance);
+    const Polygon q = clip(s.bounds.hull, r.bounds.plane, plane_tolerance);
+    if (p.count == 0 || q.count == 0) return;
+    const double exchange = contour_exchange(p, q, tolerance * std::min(r.area, s.area));
+    if (!(exchange > 0)) return;
+    ++list.entries;
+    list.scalars.push_back(
+        {r.cluster, s.cluster, static_cast<float>(visible * exchange / (r.area * s.area))});
+  }
+
+  // The kernel with what rays left of it, as simply as the allowed error admits. A single patch has one
+  // value.
+  void store(const BlockEnd& r, const BlockEnd& s, const BlockKernel& kernel, const RayCount& rays,
+             double bright_r, double bright_s, BlockList& list) const {
+    std::array<double, 16> values = kernel.values;
+    if (rays.all > 0) {
+      for (int k = 0; k < 16; ++k) values[k] *= rays.share(k);
+    }
+    std::array<double, 4> of_r{}, of_s{};
+    double mean = 0;
+    for (int a = 0; a < 4; ++a) {
+      for (int b = 0; b < 4; ++b) {
+        of_r[a] += s.weights[b] * values[4 * a + b];
+        of_s[b] += r.weights[a] * values[4 * a + b];
+      }
+    }
+    for (int a = 0; a < 4; ++a) mean += r.weights[a] * of_r[a];
+    double along_r = 0, along_s = 0;  // largest change of the kernel if a side is taken for constant
+    for (int a = 0; a < 4; ++a) {
+      for (int b = 0; b < 4; ++b) {
+        along_r = std::max(along_r, std::abs(values[4 * a + b] - of_s[b]));
+        along_s = std::max(along_s, std::abs(values[4 * a + b] - of_r[a]));
+      }
+    }
+    const double weight = std::max(s.area * bright_s, r.area * bright_r);
+    const double small = collapse_share * options_.block_error;
+    const bool constant_r = r.single || along_r * weight <= small;
+    const bool constant_s = s.single || along_s * weight <= small;
+    const auto narrow = [](const auto& wide, auto& result) {
+      for (std::size_t k = 0; k < wide.size(); ++k) result[k] = static_cast<float>(wide[k]);
+    };
+    if (constant_r && constant_s) {
+      list.scalars.push_back({r.cluster, s.cluster, static_cast<float>(mean)});
+      list.entries += r.single && s.single;
+    } else if (constant_s) {
+      narrow(of_r, list.linears.emplace_back(LinearBlock{r.cluster, s.cluster, {}}).values);
+    } else if (constant_r) {
+      narrow(of_s, list.linears.emplace_back(LinearBlock{s.cluster, r.cluster, {}}).values);
+    } else {
+      narrow(values, list.bilinears.emplace_back(BilinearBlock{r.cluster, s.cluster, {}}).values);
+    }
+  }
+
+  const PatchHierarchy& hierarchy_;
+  const HidingScene& scene_;
+  const Brightness& brightness_;
+  const AssemblyOptions& options_;
+  bool hiding_;
+  BlockRays rays_;
+};
+
+}  // namespace
+
+std::vector<BlockList> assemble_blocks(const PatchHierarchy& hierarchy, const HidingScene& scene,
+                                       const Brightness& brightness, const AssemblyOptions& options,
+                                       const Progress& progress) {
+  if (hierarchy.order.empty()) return {};
+  return Assembly(hierarchy, scene, brightness, options).run(progress);
+}
+
+}  // namespace luxel
