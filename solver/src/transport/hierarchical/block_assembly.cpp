@@ -42,9 +42,25 @@ constexpr double unknown_error = 0.04;
 constexpr double agreed_error = 0.04;
 constexpr double mixed_error = 0.25;
 
+// Horizons and near occluders change the kernel across an end alike for all parts of the other's surroundings,
+// whose errors then add up, to this many times the accuracy at most.
+constexpr double coherent_error = 5;
+
+// The bilinear interpolation across a horizon errs by this share of what all of the plane behind it sends.
+constexpr double kink_error = 0.5;
+
+// The shadow of an occluder `near` radii away changes across an end by 1 / near^2 of this.
+constexpr double shadow_error = 0.125;
+
+// So many blocks, about, share one shadow's error: smaller ones may be mixed.
+constexpr double coherence = 14;
+
 // Rays: the first lot, and the most that two single patches get.
 constexpr int first_rays = 16;
 constexpr int most_rays = 256;
+
+// Rays that must agree where an occluder is near.
+constexpr int agreeing_rays = 64;
 
 // A side is taken for constant where that changes the irradiance by less than this share of the block's
 // error.
@@ -55,6 +71,21 @@ constexpr double near_share = 0.1;
 
 using Candidates = std::vector<Candidate>;
 
+// From a point to a convex face.
+double distance(const OccluderFace& face, const Vec3& x) {
+  const double height = face.plane.distance(x);
+  const Vec3 foot = x - height * face.plane.normal;
+  double aside = 0;  // squared, from the foot to the outline
+  for (int k = 0; k < face.outline.count; ++k) {
+    if (face.sides[k].distance(foot) >= 0) continue;
+    const Vec3 along = face.outline.next(k) - face.outline[k];
+    const double at = std::clamp((foot - face.outline[k]).dot(along) / along.squaredNorm(), 0.0, 1.0);
+    const double squared = (foot - face.outline[k] - at * along).squaredNorm();
+    aside = aside == 0 ? squared : std::min(aside, squared);
+  }
+  return std::sqrt(height * height + aside);
+}
+
 class Assembly {
  public:
   Assembly(const PatchHierarchy& hierarchy, const HidingScene& scene, const Brightness& brightness,
@@ -63,6 +94,8 @@ class Assembly {
         scene_(scene),
         brightness_(brightness),
         options_(options),
+        kink_(coherent_error * options.accuracy / kink_error),
+        near_(std::sqrt(shadow_error / (coherent_error * options.accuracy))),
         hiding_(scene.rays != nullptr),
         rays_(hierarchy, hiding_ ? scene.rays->scene() : nullptr, options.seed) {}
 
@@ -121,7 +154,43 @@ class Assembly {
 
   void divide(const BlockEnd& r, const BlockEnd& s, const Candidates& candidates, BlockList& list,
               std::vector<Task>* deferred) const {
-    const bool first = !r.single && (s.single || r.bounds.radius >= s.bounds.radius);
+    divide_end(r, s, !r.single && (s.single || r.bounds.radius >= s.bounds.radius), candidates, list, deferred);
+  }
+
+  // Of all that lies in one plane with the end and sends as it does.
+  double plane_area(const BlockEnd& end) const {
+    const int position = end.single ? end.cluster - hierarchy_.cluster_count()
+                                    : hierarchy_.clusters[end.cluster].begin;
+    return end.bounds.planar ? hierarchy_.groups[hierarchy_.group[position]].area : end.area;
+  }
+
+  // Whether a face that may stand between is so near that its shadow changes across the end.
+  bool occluder_near(const BlockEnd& end, const Candidates& candidates) const {
+    const double reach = near_ * end.bounds.radius;
+    for (const Candidate& candidate : candidates) {
+      const Occluder& occluder = scene_.occluders.occluders[candidate.occluder];
+      if ((occluder.centre - end.bounds.centre).norm() > reach + occluder.radius) continue;
+      for (int k = 0; k < occluder.face_count(); ++k) {
+        if (!((candidate.from_a | candidate.from_b) >> k & 1)) continue;
+        if (distance(scene_.occluders.faces[occluder.begin + k], end.bounds.centre) < reach) return true;
+      }
+    }
+    return false;
+  }
+
+  // Divides the one end that is said to be too large, or the larger of both; false if that is a single patch.
+  // Horizons and near occluders change the kernel across an end alike for all parts of the other, whose errors
+  // add up.
+  bool divide_one(const BlockEnd& r, const BlockEnd& s, bool large_r, bool large_s,
+                  const Candidates& candidates, BlockList& list, std::vector<Task>* deferred) const {
+    const bool first = large_r && !r.single, second = large_s && !s.single;
+    if (!first && !second) return false;
+    divide_end(r, s, first && (!second || r.bounds.radius >= s.bounds.radius), candidates, list, deferred);
+    return true;
+  }
+
+  void divide_end(const BlockEnd& r, const BlockEnd& s, bool first, const Candidates& candidates,
+                  BlockList& list, std::vector<Task>* deferred) const {
     const PatchCluster& cluster = hierarchy_.clusters[first ? r.cluster : s.cluster];
     for (int k = 0; k < cluster.child_count; ++k) {
       const int child = cluster.children[k];
@@ -164,18 +233,25 @@ class Assembly {
       share =
           std::max(share, std::min(4 / (std::numbers::pi * apart * apart), 0.25 / std::min(r.area, s.area)));
     }
+    const bool straddling_r = over_s.low < -straddling_depth, straddling_s = over_r.low < -straddling_depth;
+    double error = ratio > touching_ratio ? touching_error : interpolation_error * ratio * ratio;
+    if (straddling_r || straddling_s) {
+      // the nodes may all be behind the horizon where a corner is not
+      share = std::max(share, over_r.high * over_s.high / (std::numbers::pi * std::pow(apart, 4)));
+      error = std::max(error, straddling_error);
+    }
+    error += r.roughness + s.roughness;
     const double weight =
         std::max(std::min(share * s.area, 1.0) * bright_s, std::min(share * r.area, 1.0) * bright_r);
-    const bool straddles = over_r.low < -straddling_depth || over_s.low < -straddling_depth;
-    double error = ratio > touching_ratio ? touching_error : interpolation_error * ratio * ratio;
-    if (straddles) error = std::max(error, straddling_error);
-    error += r.roughness + s.roughness;
-
     const double allowed = options_.block_error / std::max(weight, 1e-300);
     if (!single && error > allowed) {
       divide(r, s, candidates.list, list, deferred);
       return;
     }
+    const double nearby = std::numbers::pi * apart * apart;
+    const bool kinked_r = straddling_r && share * std::min(nearby, plane_area(s)) * bright_s > kink_;
+    const bool kinked_s = straddling_s && share * std::min(nearby, plane_area(r)) * bright_r > kink_;
+    if (divide_one(r, s, kinked_r, kinked_s, candidates.list, list, deferred)) return;
     RayCount rays;
     if (!candidates.list.empty()) {
       if (!single && unknown_error > allowed) {
@@ -190,7 +266,15 @@ class Assembly {
         divide(r, s, candidates.list, list, deferred);
         return;
       }
+      const bool counts = !single && coherence * mixed_error > allowed;
+      const bool near_r = counts && occluder_near(r, candidates.list);
+      const bool near_s = counts && occluder_near(s, candidates.list);
+      // a few rays that agree are no proof where much is half hidden all around
+      if (near_r || near_s) {
+        while (rays.unanimous() && rays.all < agreeing_rays) rays_.cast(r, s, rays.all + first_rays, rays);
+      }
       list.rays += rays.all;
+      if (!rays.unanimous() && divide_one(r, s, near_r, near_s, candidates.list, list, deferred)) return;
       if (rays.visible == 0) {
         ++list.hidden;
         return;
@@ -271,6 +355,8 @@ class Assembly {
   const HidingScene& scene_;
   const Brightness& brightness_;
   const AssemblyOptions& options_;
+  double kink_;  // what a plane may send to an end that it straddles
+  double near_;  // radii within which an occluder is near
   bool hiding_;
   BlockRays rays_;
 };

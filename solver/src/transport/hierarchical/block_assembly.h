@@ -15,7 +15,8 @@ namespace luxel {
 
 /// Everything that decides where blocks end.
 struct AssemblyOptions {
-  double block_error = 1e-3;  ///< most that a block may err by, as a share of the scene's RMS irradiance
+  double accuracy = 1e-2;     ///< of the irradiance, as a share of the scene's RMS irradiance
+  double block_error = 1e-3;  ///< most that a block may err by, likewise
   std::uint64_t seed = 0;
 };
 

@@ -132,11 +132,12 @@ std::unique_ptr<HierarchicalOperator> hierarchical_operator(
   int occluders = 0;
   for (const Occluder& occluder : scene.occluders.occluders) occluders += occluder.face_count();
 
-  AssemblyOptions assembly{block_share * options.accuracy, options.seed};
+  AssemblyOptions assembly{options.accuracy, block_share * options.accuracy, options.seed};
   Brightness brightness = guessed_brightness(hierarchy, reflectance, emission);
   const double first_error = std::max(first_coarsening * options.accuracy, finest_first);
   {
     AssemblyOptions loose = assembly;
+    loose.accuracy = first_error;
     loose.block_error = block_share * first_error;
     const auto first = operator_of(hierarchy, assemble_blocks(hierarchy, scene, brightness, loose, progress));
     brightness = solved_brightness(hierarchy, first->interpolation, first->coarse, reflectance, emission);
@@ -157,7 +158,7 @@ std::unique_ptr<HierarchicalOperator> hierarchical_operator(const PatchMesh& mes
   if (!scene.occluders.occluders.empty()) scene.rays = std::make_unique<OccluderScene>(scene.occluders);
   int occluders = 0;
   for (const Occluder& occluder : scene.occluders.occluders) occluders += occluder.face_count();
-  const AssemblyOptions assembly{block_share * options.accuracy, options.seed};
+  const AssemblyOptions assembly{options.accuracy, block_share * options.accuracy, options.seed};
   auto impl = operator_of(
       hierarchy, assemble_blocks(hierarchy, scene, uniform_brightness(hierarchy), assembly, progress));
   impl->report.occluders = occluders;

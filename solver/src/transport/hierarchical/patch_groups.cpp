@@ -54,6 +54,7 @@ FlatGroup flat_group(const PatchMesh& mesh, const WorkingFrame& frame, const int
     total += mesh.areas[*p];
   }
   group.offset = height / total;
+  group.area = total * frame.scale * frame.scale;
   Vec3 longest = Vec3::Zero();
   for (int k = 0; k < mesh.corner_count(largest); ++k) {
     const int next = k + 1 < mesh.corner_count(largest) ? k + 1 : 0;

@@ -57,6 +57,7 @@ struct CurvedCluster {
 struct FlatGroup {
   Vec3 u, v, normal;
   double offset = 0;
+  double area = 0;  ///< working units
   int finish = 0;
   int enclosure = 0;
   bool closed = false;  ///< its enclosure is
