@@ -48,10 +48,12 @@ std::vector<char> divided_clusters(const PatchHierarchy& hierarchy, const std::v
   return divided;
 }
 
-std::array<float, 16> transfer_to(const PatchHierarchy& hierarchy, int cluster, const ClusterAxes& parent) {
+// Zeros where no block ends at the parent or above.
+std::array<float, 16> transfer_to(const PatchHierarchy& hierarchy, int cluster, const PatchCluster& parent) {
   std::array<float, 16> transfer{};
+  if (parent.flat_group < 0 && !parent.usable) return transfer;
   const auto set = [&](int z, const Vec3& x) {
-    const std::array<double, 4> f = parent.functions(x);
+    const std::array<double, 4> f = parent.axes.functions(x);
     for (int a = 0; a < 4; ++a) transfer[4 * z + a] = static_cast<float>(f[a]);
   };
   if (hierarchy.single(cluster)) {
@@ -83,7 +85,7 @@ ActiveTree active_tree(const PatchHierarchy& hierarchy, const std::vector<BlockL
     tree.nodes.push_back(node);
     tree.transfer.push_back(
         parent < 0 ? std::array<float, 16>{}
-                   : transfer_to(hierarchy, cluster, hierarchy.clusters[tree.nodes[parent].cluster].axes));
+                   : transfer_to(hierarchy, cluster, hierarchy.clusters[tree.nodes[parent].cluster]));
   };
   add(hierarchy.root, -1);
   tree.levels = {0, 1};

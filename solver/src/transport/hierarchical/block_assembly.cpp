@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "form_factors/pair.h"
@@ -42,8 +43,8 @@ constexpr double unknown_error = 0.04;
 constexpr double agreed_error = 0.04;
 constexpr double mixed_error = 0.25;
 
-// Horizons and near occluders change the kernel across an end alike for all parts of the other's surroundings,
-// whose errors then add up, to this many times the accuracy at most.
+// Horizons and near occluders change the kernel across an end alike for all parts of the other's
+// surroundings, whose errors then add up, to this many times the accuracy at most.
 constexpr double coherent_error = 5;
 
 // The bilinear interpolation across a horizon errs by this share of what all of the plane behind it sends.
@@ -69,7 +70,18 @@ constexpr double collapse_share = 0.15;
 // An exact pair of patches may err by this share of the block's error.
 constexpr double near_share = 0.1;
 
-using Candidates = std::vector<Candidate>;
+// Long lists of occluders are looked through again only once the ends have shrunk to this share: bodies of
+// many facets seldom let a block go for certain, and rays decide in the end.
+constexpr std::size_t long_list = 8;
+constexpr double shrunk_enough = 0.6;
+
+// What may stand between two ends, found when their radii summed up to `reach`.
+struct Candidates {
+  std::vector<Candidate> list;
+  double reach = std::numeric_limits<double>::infinity();
+
+  bool empty() const { return list.empty(); }
+};
 
 // From a point to a convex face.
 double distance(const OccluderFace& face, const Vec3& x) {
@@ -101,8 +113,8 @@ class Assembly {
 
   std::vector<BlockList> run(const Progress& progress) {
     std::vector<BlockList> lists(1);
-    std::vector<Task> tasks{
-        {hierarchy_.root, hierarchy_.root, hiding_ ? all_candidates(scene_.occluders) : Candidates()}};
+    std::vector<Task> tasks{{hierarchy_.root, hierarchy_.root,
+                             hiding_ ? Candidates{all_candidates(scene_.occluders)} : Candidates()}};
     while (!tasks.empty() && tasks.size() < task_count) {
       std::vector<Task> next;
       for (const Task& task : tasks) run(task, lists[0], &next);
@@ -154,33 +166,36 @@ class Assembly {
 
   void divide(const BlockEnd& r, const BlockEnd& s, const Candidates& candidates, BlockList& list,
               std::vector<Task>* deferred) const {
-    divide_end(r, s, !r.single && (s.single || r.bounds.radius >= s.bounds.radius), candidates, list, deferred);
+    divide_end(r, s, !r.single && (s.single || r.bounds.radius >= s.bounds.radius), candidates, list,
+               deferred);
   }
 
   // Of all that lies in one plane with the end and sends as it does.
   double plane_area(const BlockEnd& end) const {
-    const int position = end.single ? end.cluster - hierarchy_.cluster_count()
-                                    : hierarchy_.clusters[end.cluster].begin;
+    const int position =
+        end.single ? end.cluster - hierarchy_.cluster_count() : hierarchy_.clusters[end.cluster].begin;
     return end.bounds.planar ? hierarchy_.groups[hierarchy_.group[position]].area : end.area;
   }
 
   // Whether a face that may stand between is so near that its shadow changes across the end.
   bool occluder_near(const BlockEnd& end, const Candidates& candidates) const {
-    const double reach = near_ * end.bounds.radius;
-    for (const Candidate& candidate : candidates) {
+    const double near_enough = near_ * end.bounds.radius;
+    for (const Candidate& candidate : candidates.list) {
       const Occluder& occluder = scene_.occluders.occluders[candidate.occluder];
-      if ((occluder.centre - end.bounds.centre).norm() > reach + occluder.radius) continue;
+      if ((occluder.centre - end.bounds.centre).norm() > near_enough + occluder.radius) continue;
       for (int k = 0; k < occluder.face_count(); ++k) {
         if (!((candidate.from_a | candidate.from_b) >> k & 1)) continue;
-        if (distance(scene_.occluders.faces[occluder.begin + k], end.bounds.centre) < reach) return true;
+        if (distance(scene_.occluders.faces[occluder.begin + k], end.bounds.centre) < near_enough) {
+          return true;
+        }
       }
     }
     return false;
   }
 
   // Divides the one end that is said to be too large, or the larger of both; false if that is a single patch.
-  // Horizons and near occluders change the kernel across an end alike for all parts of the other, whose errors
-  // add up.
+  // Horizons and near occluders change the kernel across an end alike for all parts of the other, whose
+  // errors add up.
   bool divide_one(const BlockEnd& r, const BlockEnd& s, bool large_r, bool large_s,
                   const Candidates& candidates, BlockList& list, std::vector<Task>* deferred) const {
     const bool first = large_r && !r.single, second = large_s && !s.single;
@@ -210,23 +225,28 @@ class Assembly {
     if (over_r.high <= plane_tolerance) return;
     const Span over_s = heights_over(s.bounds, r.bounds);
     if (over_s.high <= plane_tolerance) return;
-    ShaftCandidates candidates;
-    if (!inherited.empty()) {
-      candidates = candidates_in_shaft(r.shaft, s.shaft, scene_.occluders, inherited);
-      if (candidates.hidden) {
+    const double reach = r.bounds.radius + s.bounds.radius;
+    Candidates found;
+    const bool look = !inherited.empty() &&
+                      (inherited.list.size() <= long_list || reach <= shrunk_enough * inherited.reach);
+    if (look) {
+      ShaftCandidates in_shaft = candidates_in_shaft(r.shaft, s.shaft, scene_.occluders, inherited.list);
+      if (in_shaft.hidden) {
         ++list.hidden;
         return;
       }
+      found = {std::move(in_shaft.list), reach};
     }
+    const Candidates& candidates = look ? found : inherited;
     const bool single = r.single && s.single;
     if (!single && !(r.usable && s.usable)) {
-      divide(r, s, candidates.list, list, deferred);
+      divide(r, s, candidates, list, deferred);
       return;
     }
 
     const BlockKernel kernel = block_kernel(r, s);
     const double apart = (r.bounds.centre - s.bounds.centre).norm();
-    const double ratio = (r.bounds.radius + s.bounds.radius) / std::max(apart, 1e-300);
+    const double ratio = reach / std::max(apart, 1e-300);
     const double bright_r = brightness_(hierarchy_, r.cluster), bright_s = brightness_(hierarchy_, s.cluster);
     double share = kernel.largest;  // of form factor per area of the other end
     if (ratio > touching_ratio) {
@@ -245,17 +265,17 @@ class Assembly {
         std::max(std::min(share * s.area, 1.0) * bright_s, std::min(share * r.area, 1.0) * bright_r);
     const double allowed = options_.block_error / std::max(weight, 1e-300);
     if (!single && error > allowed) {
-      divide(r, s, candidates.list, list, deferred);
+      divide(r, s, candidates, list, deferred);
       return;
     }
     const double nearby = std::numbers::pi * apart * apart;
     const bool kinked_r = straddling_r && share * std::min(nearby, plane_area(s)) * bright_s > kink_;
     const bool kinked_s = straddling_s && share * std::min(nearby, plane_area(r)) * bright_r > kink_;
-    if (divide_one(r, s, kinked_r, kinked_s, candidates.list, list, deferred)) return;
+    if (divide_one(r, s, kinked_r, kinked_s, candidates, list, deferred)) return;
     RayCount rays;
-    if (!candidates.list.empty()) {
+    if (!candidates.empty()) {
       if (!single && unknown_error > allowed) {
-        divide(r, s, candidates.list, list, deferred);
+        divide(r, s, candidates, list, deferred);
         return;
       }
       rays_.cast(r, s, first_rays, rays);
@@ -263,18 +283,18 @@ class Assembly {
         while (rays.error() > allowed && rays.all < most_rays) rays_.cast(r, s, 2 * rays.all, rays);
       } else if ((rays.unanimous() ? agreed_error : mixed_error) > allowed) {
         list.rays += rays.all;
-        divide(r, s, candidates.list, list, deferred);
+        divide(r, s, candidates, list, deferred);
         return;
       }
       const bool counts = !single && coherence * mixed_error > allowed;
-      const bool near_r = counts && occluder_near(r, candidates.list);
-      const bool near_s = counts && occluder_near(s, candidates.list);
+      const bool near_r = counts && occluder_near(r, candidates);
+      const bool near_s = counts && occluder_near(s, candidates);
       // a few rays that agree are no proof where much is half hidden all around
       if (near_r || near_s) {
         while (rays.unanimous() && rays.all < agreeing_rays) rays_.cast(r, s, rays.all + first_rays, rays);
       }
       list.rays += rays.all;
-      if (!rays.unanimous() && divide_one(r, s, near_r, near_s, candidates.list, list, deferred)) return;
+      if (!rays.unanimous() && divide_one(r, s, near_r, near_s, candidates, list, deferred)) return;
       if (rays.visible == 0) {
         ++list.hidden;
         return;

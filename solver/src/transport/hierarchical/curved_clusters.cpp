@@ -87,6 +87,9 @@ PatchCluster curved_cluster(const PatchHierarchy& hierarchy, int begin, int end,
   }
   curved.cone_sine = std::sqrt(std::max(0.0, 1 - curved.cone_cosine * curved.cone_cosine));
 
+  cluster.usable = curved.cone_cosine >= least_cone_cosine;
+  if (!cluster.usable) return cluster;
+
   cluster.axes = principal_axes(mesh, frame, patches, curved.normal, total);
   cluster.weights.fill(0);
   curved.nodes.fill(Vec3::Zero());
@@ -101,7 +104,7 @@ PatchCluster curved_cluster(const PatchHierarchy& hierarchy, int begin, int end,
     }
   }
   const double least = *std::min_element(cluster.weights.begin(), cluster.weights.end());
-  cluster.usable = least >= least_weight && curved.cone_cosine >= least_cone_cosine;
+  cluster.usable = least >= least_weight;
   if (!cluster.usable) return cluster;
   for (int a = 0; a < 4; ++a) {
     curved.nodes[a] /= cluster.weights[a];

@@ -132,6 +132,10 @@ class Builder {
     cluster.children[0] = emit(begin, middle, id, division);
     cluster.children[1] = emit(middle, end, id, division);
     cluster.child_count = 2;
+    for (int child : {cluster.children[0], cluster.children[1]}) {
+      if (child >= 0 && result_.clusters[child].flat_group < 0)
+        cluster.usable &= result_.clusters[child].usable;
+    }
     result_.clusters[id] = cluster;
     return id;
   }

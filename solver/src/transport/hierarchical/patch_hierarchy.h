@@ -33,8 +33,9 @@ struct PatchCluster {
   double area = 0;      ///< working units
   ClusterAxes axes;
   std::array<double, 4> weights;  ///< of the nodes: shares of the area; sum 1
-  bool usable = false;  ///< the nodes' weights are all well above 0: the cluster may be an end of a block
-  Vec3 centre;          ///< of a sphere around the patches
+  bool usable = false;            ///< the nodes' weights are all well above 0: the cluster may be an
+                        ///< end of a block; what is curved and usable has no curved parts that are not
+  Vec3 centre;  ///< of a sphere around the patches
   double radius = 0;
   std::array<double, 4>
       box{};        ///< flat: least and most s, least and most t of the patches' corners, from the middle
