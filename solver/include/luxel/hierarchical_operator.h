@@ -33,7 +33,6 @@ struct HierarchicalReport {
   std::int64_t rays = 0;      ///< cast to find what is hidden
   int occluders = 0;          ///< convex polygons that can hide anything; 0: no ray was cast
   std::size_t bytes = 0;      ///< of the operator
-  double expected_error = 0;  ///< of the irradiance, as `accuracy`, from the blocks' own estimates
   ClosureReport closure;      ///< row sums before and after they were scaled
 };
 
@@ -95,7 +94,8 @@ struct HierarchicalSolution {
 /// all over each finish, on the patches otherwise; the irradiance is expanded to the patches once, at the
 /// end. The same input and seed give the same bits for any number of threads.
 /// @param solving  method, tolerance, bounces and callbacks of the iteration; its tolerance is raised to a
-/// hundredth of the accuracy, since less is lost in the blocks; callbacks get no radiosity where nodes are iterated on
+/// hundredth of the accuracy, since less is lost in the blocks; callbacks get no radiosity where nodes are
+/// iterated on
 /// @throws SingularSystem; std::invalid_argument; Cancelled
 HierarchicalSolution solve_hierarchical(const PatchMesh& mesh, const Enclosures& enclosures,
                                         const PatchField& reflectance, const PatchField& emission,

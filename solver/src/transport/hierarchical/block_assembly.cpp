@@ -23,7 +23,7 @@ constexpr std::size_t task_count = 4096;
 
 // Bilinear interpolation of the kernel between ends of radii r and s at distance d errs by about this times
 // ((r + s) / d)^2 of it.
-constexpr double interpolation_error = 0.06;
+constexpr double interpolation_error = 0.5;
 
 // Ends nearer than this, (r + s) / d, are too close for the nodes to tell the kernel; what they exchange is
 // then uncertain by this share of it.
@@ -41,7 +41,7 @@ constexpr double straddling_depth = 1e-7;
 // do not, beside their own standard error.
 constexpr double unknown_error = 0.04;
 constexpr double agreed_error = 0.04;
-constexpr double mixed_error = 0.25;
+constexpr double mixed_error = 0.12;
 
 // Horizons and near occluders change the kernel across an end alike for all parts of the other's
 // surroundings, whose errors then add up, to this many times the accuracy at most.
@@ -65,7 +65,7 @@ constexpr int agreeing_rays = 64;
 
 // A side is taken for constant where that changes the irradiance by less than this share of the block's
 // error.
-constexpr double collapse_share = 0.15;
+constexpr double collapse_share = 0.3;
 
 // An exact pair of patches may err by this share of the block's error.
 constexpr double near_share = 0.1;
@@ -299,13 +299,9 @@ class Assembly {
         ++list.hidden;
         return;
       }
-      error += rays.error();
     } else {
       ++list.unhidden;
     }
-    const double area =
-        r.area * std::pow(share * s.area * bright_s, 2) + s.area * std::pow(share * r.area * bright_r, 2);
-    list.squared_error += area * error * error;
     if (single && ratio > near_ratio) {
       store_near(r, s, rays.share(),
                  std::min(near_share * options_.block_error / std::max(bright_r, bright_s), near_share),

@@ -31,7 +31,6 @@ struct BlockList {
   std::int64_t unhidden = 0;
   std::int64_t hidden = 0;
   std::int64_t rays = 0;
-  double squared_error = 0;  ///< sum of area times squared error of irradiance over either end
 
   std::size_t size() const { return scalars.size() + linears.size() + bilinears.size(); }
 };

@@ -15,9 +15,13 @@ namespace luxel {
 
 namespace {
 
-// A point receives light through some hundreds of blocks, whose errors have either sign: each may err by this
-// share of what is asked of their sum. Measured; see docs/decisions/0014-hierarchical.md.
-constexpr double block_share = 0.07;
+// A point receives light through hundreds of blocks, the more the smaller the error that each may have, and
+// their errors have either sign: for an accuracy A each may err by block_share A^1.5. Measured; see
+// docs/decisions/0014-hierarchical.md.
+constexpr double block_share = 1.2;
+double block_error(double accuracy) {
+  return block_share * std::pow(accuracy, 1.5);
+}
 
 // The first operator, which only tells how bright clusters are, is this much coarser, and never finer than
 // the second number.
@@ -46,19 +50,16 @@ std::unique_ptr<Impl> operator_of(const PatchHierarchy& hierarchy, std::vector<B
   ActiveTree tree = active_tree(hierarchy, lists);
   NodeInterpolation interpolation(hierarchy, tree);
   HierarchicalReport report;
-  double total = 0, squared_error = 0;
   for (const BlockList& list : lists) {
     report.entries += list.entries;
     report.blocks += static_cast<std::int64_t>(list.size()) - list.entries;
     report.unhidden += list.unhidden;
     report.hidden += list.hidden;
     report.rays += list.rays;
-    squared_error += list.squared_error;
   }
   const double square = hierarchy.frame.scale * hierarchy.frame.scale;
   std::vector<double> working_areas = interpolation.node_areas();
-  for (double& area : working_areas) total += area *= square;
-  if (total > 0) report.expected_error = std::sqrt(squared_error / total);
+  for (double& area : working_areas) area *= square;
   report.clusters = hierarchy.cluster_count();
   report.unknowns = interpolation.unknowns();
   std::vector<double> areas = interpolation.node_areas();
@@ -132,13 +133,13 @@ std::unique_ptr<HierarchicalOperator> hierarchical_operator(
   int occluders = 0;
   for (const Occluder& occluder : scene.occluders.occluders) occluders += occluder.face_count();
 
-  AssemblyOptions assembly{options.accuracy, block_share * options.accuracy, options.seed};
+  AssemblyOptions assembly{options.accuracy, block_error(options.accuracy), options.seed};
   Brightness brightness = guessed_brightness(hierarchy, reflectance, emission);
   const double first_error = std::max(first_coarsening * options.accuracy, finest_first);
   {
     AssemblyOptions loose = assembly;
     loose.accuracy = first_error;
-    loose.block_error = block_share * first_error;
+    loose.block_error = block_error(first_error);
     const auto first = operator_of(hierarchy, assemble_blocks(hierarchy, scene, brightness, loose, progress));
     brightness = solved_brightness(hierarchy, first->interpolation, first->coarse, reflectance, emission);
   }
@@ -158,7 +159,7 @@ std::unique_ptr<HierarchicalOperator> hierarchical_operator(const PatchMesh& mes
   if (!scene.occluders.occluders.empty()) scene.rays = std::make_unique<OccluderScene>(scene.occluders);
   int occluders = 0;
   for (const Occluder& occluder : scene.occluders.occluders) occluders += occluder.face_count();
-  const AssemblyOptions assembly{options.accuracy, block_share * options.accuracy, options.seed};
+  const AssemblyOptions assembly{options.accuracy, block_error(options.accuracy), options.seed};
   auto impl = operator_of(
       hierarchy, assemble_blocks(hierarchy, scene, uniform_brightness(hierarchy), assembly, progress));
   impl->report.occluders = occluders;
