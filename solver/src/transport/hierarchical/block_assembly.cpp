@@ -98,6 +98,17 @@ double distance(const OccluderFace& face, const Vec3& x) {
   return std::sqrt(height * height + aside);
 }
 
+// Of what the kernel would let through.
+double visible_share(const BlockKernel& kernel, const RayCount& rays) {
+  if (rays.unanimous()) return rays.share();
+  double all = 0, visible = 0;
+  for (int k = 0; k < 16; ++k) {
+    all += kernel.values[k];
+    visible += kernel.values[k] * rays.share(k);
+  }
+  return all > 0 ? visible / all : rays.share();
+}
+
 class Assembly {
  public:
   Assembly(const PatchHierarchy& hierarchy, const HidingScene& scene, const Brightness& brightness,
@@ -303,7 +314,7 @@ class Assembly {
       ++list.unhidden;
     }
     if (single && ratio > near_ratio) {
-      store_near(r, s, rays.share(),
+      store_near(r, s, visible_share(kernel, rays),
                  std::min(near_share * options_.block_error / std::max(bright_r, bright_s), near_share),
                  list);
     } else {

@@ -49,9 +49,13 @@ double RayCount::error() const {
 }
 
 BlockRays::Point BlockRays::point(const BlockEnd& end, int node, double u, double v) const {
+  const auto nearest_node = [&](const Vec3& x) {
+    return (end.axes.u.dot(x - end.axes.middle) > 0 ? 1 : 0) +
+           (end.axes.v.dot(x - end.axes.middle) > 0 ? 2 : 0);
+  };
   if (end.single) {
     const Vec3 at = point_on(end.bounds.hull, 0.5 * ((node & 1) + u), 0.5 * ((node >> 1) + v));
-    return {at + surface_offset * end.bounds.plane.normal, node};
+    return {at + surface_offset * end.bounds.plane.normal, nearest_node(at)};
   }
   if (end.bounds.planar) {
     // the rectangle of equal moments, which is the cluster itself where it is one
@@ -73,8 +77,7 @@ BlockRays::Point BlockRays::point(const BlockEnd& end, int node, double u, doubl
     outline.corners[k] = hierarchy_.frame(mesh.vertices[mesh.corners[patch][k]]);
   }
   const Vec3 x = point_on(outline, at - which, v);
-  const int s = end.axes.u.dot(x - end.axes.middle) > 0, t = end.axes.v.dot(x - end.axes.middle) > 0;
-  return {x + surface_offset * mesh.normals[patch], s + 2 * t};
+  return {x + surface_offset * mesh.normals[patch], nearest_node(x)};
 }
 
 void BlockRays::cast(const BlockEnd& r, const BlockEnd& s, int wanted, RayCount& count) const {
