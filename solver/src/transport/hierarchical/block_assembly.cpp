@@ -139,6 +139,7 @@ class Assembly {
           for (std::size_t k = range.begin(); k < range.end(); ++k) {
             if (stage.cancelled()) return;
             run(tasks[k], lists[k + 1], nullptr);
+            lists[k + 1].shrink();
             stage.add(1);
           }
         },
