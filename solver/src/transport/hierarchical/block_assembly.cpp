@@ -61,7 +61,7 @@ constexpr int first_rays = 16;
 constexpr int most_rays = 256;
 
 // Rays that must agree where an occluder is near.
-constexpr int agreeing_rays = 64;
+constexpr int agreeing_rays = 256;
 
 // A side is taken for constant where that changes the irradiance by less than this share of the block's
 // error.
