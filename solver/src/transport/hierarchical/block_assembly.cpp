@@ -292,7 +292,7 @@ class Assembly {
       }
       rays_.cast(r, s, first_rays, rays);
       if (single) {
-        while (rays.error() > allowed && rays.all < most_rays) rays_.cast(r, s, 2 * rays.all, rays);
+        while (rays.error() > allowed && rays.drawn < most_rays) rays_.cast(r, s, 2 * rays.drawn, rays);
       } else if ((rays.unanimous() ? agreed_error : mixed_error) > allowed) {
         list.rays += rays.all;
         divide(r, s, candidates, list, deferred);
@@ -303,11 +303,13 @@ class Assembly {
       const bool near_s = counts && occluder_near(s, candidates);
       // a few rays that agree are no proof where much is half hidden all around
       if (near_r || near_s) {
-        while (rays.unanimous() && rays.all < agreeing_rays) rays_.cast(r, s, rays.all + first_rays, rays);
+        while (rays.unanimous() && rays.drawn < agreeing_rays) {
+          rays_.cast(r, s, rays.drawn + first_rays, rays);
+        }
       }
       list.rays += rays.all;
       if (!rays.unanimous() && divide_one(r, s, near_r, near_s, candidates, list, deferred)) return;
-      if (rays.visible == 0) {
+      if (rays.all > 0 && rays.visible == 0) {
         ++list.hidden;
         return;
       }
