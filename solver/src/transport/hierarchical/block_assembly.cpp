@@ -30,7 +30,7 @@ constexpr double interpolation_error = 0.5;
 constexpr double touching_ratio = 0.8;
 constexpr double touching_error = 0.25;
 
-// Nearer single patches get an exact kernel.
+// Nearer single patches, and those that straddle, get an exact kernel.
 constexpr double near_ratio = 0.5;
 
 // An end partly behind the other's horizon: the kernel has a kink.
@@ -316,7 +316,7 @@ class Assembly {
     } else {
       ++list.unhidden;
     }
-    if (single && ratio > near_ratio) {
+    if (single && (ratio > near_ratio || straddling_r || straddling_s)) {
       store_near(r, s, visible_share(kernel, rays),
                  std::min(near_share * options_.block_error / std::max(bright_r, bright_s), near_share),
                  list);
