@@ -195,6 +195,7 @@ class Assembly {
     for (const Candidate& candidate : candidates.list) {
       const Occluder& occluder = scene_.occluders.occluders[candidate.occluder];
       if ((occluder.centre - end.bounds.centre).norm() > near_enough + occluder.radius) continue;
+      if (occluder.round()) return true;
       for (int k = 0; k < occluder.face_count(); ++k) {
         if (!((candidate.from_a | candidate.from_b) >> k & 1)) continue;
         if (distance(scene_.occluders.faces[occluder.begin + k], end.bounds.centre) < near_enough) {

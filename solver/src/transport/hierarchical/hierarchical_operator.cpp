@@ -16,9 +16,9 @@ namespace luxel {
 namespace {
 
 // A point receives light through hundreds of blocks, the more the smaller the error that each may have, and
-// their errors have either sign: for an accuracy A each may err by block_share A^1.5. Measured; see
+// their errors have either sign: for an accuracy A each may err by A^1.5 times this. Measured; see
 // docs/decisions/0014-hierarchical.md.
-constexpr double block_share = 1.2;
+constexpr double block_share = 1.0;
 double block_error(double accuracy) {
   return block_share * std::pow(accuracy, 1.5);
 }
