@@ -260,6 +260,32 @@ TEST(Visibility, ClosesARoomWithABoxOnItsUnsplitFloor) {
   EXPECT_EQ(dark, 4 + 4);
 }
 
+// A cube full of small two-sided sheets, each in a cell of its own: so many that rays sort the blocks.
+PatchMesh room_with_leaves() {
+  SceneBuilder scene;
+  scene.box({0, 0, 0}, {1, 1, 1}, Eigen::Matrix3d::Identity(), 6, true);
+  for (int k = 0; k < 64; ++k) {
+    const Vec3 centre = Vec3(k % 4 + 0.5, k / 4 % 4 + 0.5, k / 16 + 0.5) / 4;
+    const Eigen::Matrix3d turn = turned(0.7 * k, 1.1 * k, 1.9 * k);
+    const Vec3 u = 0.07 * turn.col(0), v = 0.05 * turn.col(1);
+    scene.quad(centre - u - v, centre + u - v, centre + u + v, centre - u + v, 1, 2);
+  }
+  return scene.take();
+}
+
+TEST(Visibility, ClosesARoomFullOfLeavesToTheAccuracyAsked) {
+  const PatchMesh mesh = room_with_leaves();
+
+  for (double accuracy : {1e-2, 1e-3}) {
+    const FormFactors f = factors(mesh, accuracy);
+
+    const RowErrors errors = row_errors(f, mesh);
+    EXPECT_LE(errors.rms, accuracy);
+    EXPECT_LE(errors.max, 2 * accuracy);
+    EXPECT_GT(f.report.rays, 0);
+  }
+}
+
 TEST(Visibility, CutsTheFloorWhereAWallStandsOnIt) {
   // the patch that looks on may be smaller or larger than the floor: either of the two is then the one that
   // is cut
@@ -387,8 +413,11 @@ TEST(Visibility, DoesNotDependOnPlaceSizeOrDirection) {
 }
 
 TEST(Visibility, HasTheSameBitsForAnyNumberOfThreads) {
-  const PatchMesh mesh = testing::room_with_turned_boxes(6, 3);
-  for (Visibility way : {Visibility::automatic, Visibility::rays}) {
+  const PatchMesh boxes = testing::room_with_turned_boxes(6, 3), leaves = room_with_leaves();
+  for (const auto& [scene, way] :
+       {std::pair(&boxes, Visibility::automatic), std::pair(&boxes, Visibility::rays),
+        std::pair(&leaves, Visibility::automatic)}) {
+    const PatchMesh& mesh = *scene;
     FormFactors one, two;
     {
       const tbb::global_control single(tbb::global_control::max_allowed_parallelism, 1);

@@ -37,8 +37,11 @@ constexpr double coarse = 0.02;
 // this share of a pair.
 constexpr double coarsest = 0.1;
 
+// Pairs are sorted at this accuracy at least: agreement of few rays takes small shadows for none.
+constexpr double loosest_sort = 5e-4;
+
 // Pairs that exchange so many times the mean of their block are looked at by themselves.
-constexpr double outstanding = 8;
+constexpr double outstanding = 2;
 
 // Blocks are handed to rays as a whole where so many occluders stand in the way for each patch of a side:
 // where there are fewer, smaller blocks have fewer still.
@@ -171,7 +174,8 @@ void BlockVisibility::sort_by_rays(int a, int b, const std::vector<Candidate>& c
   for (double& exchange : asked) {
     if (exchange * facing > outstanding * total) exchange = 0;
   }
-  const BlockSights found = scene_.sorter->sort(a, b, asked, strictest * ray_share * scene_.options.accuracy);
+  const BlockSights found = scene_.sorter->sort(
+      a, b, asked, strictest * ray_share * std::min(scene_.options.accuracy, loosest_sort));
   tally_.rays += found.rays;
 
   // of what each row and column exchanges, the part that is in doubt

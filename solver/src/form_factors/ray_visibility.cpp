@@ -12,7 +12,7 @@ namespace luxel {
 namespace {
 
 // Rays of a pair, powers of two: the first lot, and the most that any pair gets.
-constexpr int first_rays = 8;
+constexpr int first_rays = 16;
 constexpr int most_rays = 1 << 16;
 
 // A pair while its rays are under way.
