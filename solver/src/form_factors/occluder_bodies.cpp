@@ -1,6 +1,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <numeric>
 #include <utility>
@@ -90,15 +91,21 @@ bool reaches_into(const WorkPatch& patch, std::span<const OccluderFace> body) {
   return area(rest, patch.plane.normal) > touching_share * patch.area;
 }
 
-bool anything_inside(const Occluder& body, std::span<const OccluderFace> faces, const ClusterTree& tree,
-                     const PatchMesh& mesh) {
+bool anything_inside(const Occluder& body, std::span<const OccluderFace> faces, const PatchMesh& mesh,
+                     const WorkingFrame& frame) {
   std::map<int, Vec3> normals;  // of the body's polygons
   for (const OccluderFace& face : faces) normals.try_emplace(face.polygon, face.plane.normal);
-  for (const WorkPatch& patch : tree.patches) {
-    const double reach = body.radius + patch.edge + side_tolerance;
-    if ((patch.centroid - body.centre).squaredNorm() > reach * reach) continue;
+  for (int p = 0; p < mesh.size(); ++p) {
+    const Vec3 middle = frame(mesh.centroids[p]);
+    double square = 0;
+    for (int k = 0; k < mesh.corner_count(p); ++k) {
+      square = std::max(square, (frame(mesh.vertices[mesh.corners[p][k]]) - middle).squaredNorm());
+    }
+    const double reach = body.radius + std::sqrt(square) + side_tolerance;
+    if ((middle - body.centre).squaredNorm() > reach * reach) continue;
+    const WorkPatch patch = work_patch(mesh, p, frame);
     // a second sheet back to back with a face of the body looks into it
-    const auto own = normals.find(mesh.polygons[patch.patch]);
+    const auto own = normals.find(mesh.polygons[p]);
     const bool outward = own != normals.end() && own->second.dot(patch.plane.normal) > 0.5;
     if (!outward && reaches_into(patch, faces)) return true;
   }
@@ -128,8 +135,8 @@ Side side_of_plane(const Occluder& round_body, const Plane& plane) {
   return front ? Side::front : Side::behind;
 }
 
-std::vector<Occluder> join_bodies(std::vector<OccluderFace>& faces, const ClusterTree& tree,
-                                  const PatchMesh& mesh) {
+std::vector<Occluder> join_bodies(std::vector<OccluderFace>& faces, const PatchMesh& mesh,
+                                  const WorkingFrame& frame) {
   const auto left = edges_of(faces);
   const auto at_vertices = faces_at_vertices(faces);
   std::vector<int> parent(faces.size());
@@ -168,7 +175,7 @@ std::vector<Occluder> join_bodies(std::vector<OccluderFace>& faces, const Cluste
     bound(body, own);
     bool whole = members.size() >= 4 && members.size() <= most_faces &&
                  std::all_of(members.begin(), members.end(), [&](int f) { return closed[f]; }) &&
-                 convex(faces, members) && !anything_inside(body, own, tree, mesh);
+                 convex(faces, members) && !anything_inside(body, own, mesh, frame);
     if (whole && body.round()) {
       body.vertices = own_vertices(own, at_vertices);
       whole = !body.vertices.empty();
