@@ -111,6 +111,7 @@ struct GatherReport {
   std::int64_t asked_twice = 0;  ///< rays that float left in doubt, settled in double precision
   int partly_lit = 0;            ///< patches in or next to a penumbra
   double smoothed = 0;           ///< mean share by which the packets followed their fit, in [0, 1]
+  std::size_t bytes = 0;         ///< held for the rays: those kept, and the map from hits to patches
 };
 
 /// Radiosity and irradiance with how they were gathered; `light.report` is that of the iteration on the
@@ -118,6 +119,7 @@ struct GatherReport {
 struct GatheredSolution {
   RadiositySolution light;
   PatchField direct;  ///< N x m: the irradiance straight from the emitters; empty where it was not apart
+  std::vector<double> row_sums;  ///< N: share of all rays of each patch that met a patch
   GatherReport report;
 };
 
@@ -126,8 +128,8 @@ struct GatheredSolution {
 /// much of the surface they are met by the rays instead. The same input and seed give the same bits for any
 /// number of threads.
 /// Cost: 30 to 50 ns of CPU a ray on merged polygons, about 1 us on a million rough triangles.
-/// @param solving     method, bounces and callbacks of the iteration on U; its tolerance is raised to a
-/// hundredth of the accuracy, since less is lost in the sampling
+/// @param solving  method, tolerance and callbacks of the iteration on the stored rays; residuals are
+/// relative to the emission, and an upper bound in the history where channels differ; no bounces
 /// @throws SingularSystem; std::invalid_argument; Cancelled
 GatheredSolution solve_gathered(const PatchMesh& mesh, const RayScene& occluders,
                                 const PatchField& reflectance, const PatchField& emission,

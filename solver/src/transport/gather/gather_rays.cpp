@@ -28,7 +28,8 @@ constexpr int lost_for_certain = 4, wrong_among = 8;
 constexpr int replacements = 8;
 
 // Streams of random numbers, all seeded by patch or packet.
-constexpr std::uint64_t own_stream = 0x67617468, shared_stream = 0x73686172, replacement_stream = 0x7265706c;
+constexpr std::uint64_t own_stream = 0x67617468, shared_stream = 0x73686172, replacement_stream = 0x7265706c,
+                        single_stream = 0x73696e67;
 
 // With more triangles a packet shares whole directions: through small triangles, rays that are nearly
 // parallel part too soon, and where little is merged there is no plane over which neighbours' noise could be
@@ -57,13 +58,24 @@ std::vector<std::int32_t> closed_cells(const PatchMesh& mesh, const RayScene& oc
 
 }  // namespace
 
-GatherRays::GatherRays(const PatchMesh& mesh, const RayScene& occluders, int count, std::uint64_t seed)
+PatchNet::PatchNet(int count)
+    : blocks_((count + lanes - 1) / lanes), words_(4 * static_cast<std::size_t>(this->count())) {
+  const std::vector<std::uint32_t> words = reversed_sobol_words(this->count());
+  for (int b = 0; b < blocks_; ++b) {
+    for (int k = 0; k < lanes; ++k) {
+      for (int q = 0; q < 4; ++q) words_[(4 * b + q) * lanes + k] = words[4 * (b * lanes + k) + q];
+    }
+  }
+}
+
+GatherRays::GatherRays(const PatchMesh& mesh, const RayScene& occluders, int count, std::uint64_t seed,
+                       int most)
     : mesh_(mesh),
       occluders_(occluders),
       count_(count),
       seed_(seed),
       packets_(packets_of(mesh)),
-      map_(mesh),
+      map_(mesh, HitMap::texels_for(mesh.size(), std::max(count, most))),
       words_(reversed_sobol_words(count)),
       enclosures_(closed_cells(mesh, occluders)) {
   scene_.embree = occluders.embree_scene();
@@ -119,9 +131,31 @@ void GatherRays::trace(std::size_t packet, int first, int count, std::uint32_t* 
   const PacketFrame frame = frame_of(packets_[packet]);
   std::vector<DoubtfulRay> doubtful;
   trace_packet(scene_, frame, first, count, met, doubtful);
+  settle(packets_[packet], first, doubtful, met);
+}
+
+void GatherRays::trace_patch(int patch, const PatchNet& net, std::uint64_t seed, std::uint32_t* met) const {
+  GatherOperator::Packet packet;
+  packet.fill(patch);
+  PacketFrame frame = frame_of(packet);
+  const std::uint64_t own = mixed_seed(seed ^ single_stream, patch);
+  for (int q = 0; q < 4; ++q) {
+    std::fill_n(frame.seeds[q], lanes, static_cast<std::uint32_t>(mixed_seed(own, q)));
+  }
+  PacketScene scene = scene_;
+  scene.words = net.words_.data();
+  scene.lane_words = true;
+  scene.lower_digits = ~0u;
+  std::vector<DoubtfulRay> doubtful;
+  trace_packet(scene, frame, 0, net.blocks_, met, doubtful);
+  settle(packet, 0, doubtful, met);
+}
+
+void GatherRays::settle(const GatherOperator::Packet& packet, int first,
+                        const std::vector<DoubtfulRay>& doubtful, std::uint32_t* met) const {
   int asked = 0, lost = 0, found = 0;
   for (const DoubtfulRay& ray : doubtful) {
-    const int patch = packets_[packet][ray.lane];
+    const int patch = packet[ray.lane];
     const bool closed = enclosures_[patch] >= 0;
     if (ray.lost && !closed && lost >= lost_for_certain && lost > wrong_among * found) continue;
     std::uint32_t& end = met[static_cast<std::size_t>(ray.ray) * lanes + ray.lane];
@@ -141,21 +175,32 @@ int GatherRays::patch_met(int patch, const Vec3& origin, const Vec3& direction) 
   RayScene::Hit hit;
   occluders_.intersect({&origin, 1}, {&mesh_.normals[patch], 1}, {&direction, 1}, {&hit, 1});
   if (hit.primitive < 0) return -1;
-  int met = map_.at(hit.primitive, hit.front, hit.u, hit.v);
-  if (met == HitMap::ask) {
-    met = locator().patch_at(hit.primitive, hit.front, origin + hit.distance * direction);
-  }
+  const int met = locator().patch_at(hit.primitive, hit.front, origin + hit.distance * direction);
   if (met < 0) return -1;
   const bool leaked = enclosures_[patch] >= 0 && enclosures_[met] != enclosures_[patch];
   return leaked ? -1 : met;
 }
 
+/// The patch at a hit whose texel does not know; -1 as in patch_met().
+int GatherRays::patch_hit(int patch, const DoubtfulRay& ray) const {
+  const auto& [a, b, c] = mesh_.occluders.triangles[ray.triangle];
+  const Vec3& corner = mesh_.occluders.vertices[a];
+  const Vec3 point = corner + ray.u * (mesh_.occluders.vertices[b] - corner) +
+                     ray.v * (mesh_.occluders.vertices[c] - corner);
+  const int met = locator().patch_at(ray.triangle, ray.front, point);
+  if (met < 0) return -1;
+  return enclosures_[patch] >= 0 && enclosures_[met] != enclosures_[patch] ? -1 : met;
+}
+
 std::uint32_t GatherRays::settled(int patch, const DoubtfulRay& ray) const {
-  const auto vector = [](const float* x) { return Vec3(x[0], x[1], x[2]); };
-  Vec3 origin = vector(ray.origin) / occluders_.scale() + occluders_.centre();
-  const Vec3& normal = mesh_.normals[patch];
-  origin -= normal.dot(origin - mesh_.centroids[patch]) * normal;
-  const int met = patch_met(patch, origin, vector(ray.direction).normalized());
+  int met = ray.lost ? -1 : patch_hit(patch, ray);
+  if (met < 0) {
+    const auto vector = [](const float* x) { return Vec3(x[0], x[1], x[2]); };
+    Vec3 origin = vector(ray.origin) / occluders_.scale() + occluders_.centre();
+    const Vec3& normal = mesh_.normals[patch];
+    origin -= normal.dot(origin - mesh_.centroids[patch]) * normal;
+    met = patch_met(patch, origin, vector(ray.direction).normalized());
+  }
   return static_cast<std::uint32_t>(met >= 0 ? met : mesh_.size());
 }
 

@@ -98,7 +98,10 @@ HWY_INLINE void StartRays(const PacketScene& scene, const PacketFrame& frame, co
   const Real d;
   const Word w;
   const auto seed = [&](int q) { return hn::Load(w, frame.seeds[q] + k); };
-  const auto own = [&](int q) { return BitsReversed(Scrambled(hn::Set(w, words[q]), seed(q))); };
+  const auto own = [&](int q) {
+    const Words word = scene.lane_words ? hn::LoadU(w, words + q * lanes + k) : hn::Set(w, words[q]);
+    return BitsReversed(Scrambled(word, seed(q)));
+  };
 
   // the point: which triangle, then the square folded to it
   Reals s = Fraction(own(0)), t = Fraction(own(1));
@@ -218,13 +221,21 @@ HWY_INLINE void Land(const PacketScene& scene, const PacketFrame& frame, const F
     doubts |= FindPatches(scene, frame, flight, k, met + static_cast<size_t>(ray) * lanes) << k;
   }
   const RTCRay16& rays = flight.rays.ray;
+  const RTCHit16& hits = flight.rays.hit;
   for (; doubts != 0; doubts &= doubts - 1) {
     const int k = static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero64(doubts));
+    const bool asks = flight.texels[k] >= 0 && scene.map->texels()[flight.texels[k]] == HitMap::ask;
+    const float facing =
+        hits.Ng_x[k] * rays.dir_x[k] + hits.Ng_y[k] * rays.dir_y[k] + hits.Ng_z[k] * rays.dir_z[k];
     doubtful.push_back({ray,
                         k,
-                        flight.texels[k] < 0,
+                        !asks,
                         {rays.org_x[k], rays.org_y[k], rays.org_z[k]},
-                        {rays.dir_x[k], rays.dir_y[k], rays.dir_z[k]}});
+                        {rays.dir_x[k], rays.dir_y[k], rays.dir_z[k]},
+                        static_cast<int>(hits.primID[k]),
+                        hits.u[k],
+                        hits.v[k],
+                        facing < 0});
   }
 }
 
@@ -243,9 +254,10 @@ void Trace(const PacketScene& scene, const PacketFrame& frame, int first, int co
     }
   }
   const LaineKarras scramble;
+  const int words_a_ray = scene.lane_words ? 4 * lanes : 4;
   for (int q = 0; q < count; ++q) {
     Flight& flight = flights[q % 2];
-    const uint32_t* words = scene.words + 4 * static_cast<size_t>(first + q);
+    const uint32_t* words = scene.words + words_a_ray * static_cast<size_t>(first + q);
     const uint32_t height = bits_reversed(scramble(words[2], frame.shared_seeds[0]));
     const uint32_t azimuth = bits_reversed(scramble(words[3], frame.shared_seeds[1]));
     for (int k = 0; k < lanes; k += step) StartRays(scene, frame, words, height, azimuth, k, flight.rays);

@@ -170,4 +170,23 @@ void draw_patches(const PatchMesh& mesh, std::span<const int> patches, const Pla
   }
 }
 
+void draw_doubt(const PlanePicture& picture, const Vec3& from, const Vec3& to,
+                std::span<std::int32_t> texels) {
+  // from the centre of a texel to its farthest points
+  constexpr double reach = 0.7072;
+  const Eigen::Vector2d a = picture.at(from), edge = picture.at(to) - a;
+  const Eigen::Array2d low = a.array().min((a + edge).array()), high = a.array().max((a + edge).array());
+  const Eigen::Array2i first = (low - reach).floor().cast<int>().max(0);
+  const Eigen::Array2i last =
+      (high + reach).floor().cast<int>().min(Eigen::Array2i(picture.width - 1, picture.height - 1));
+  for (int y = first[1]; y <= last[1]; ++y) {
+    for (int x = first[0]; x <= last[0]; ++x) {
+      const Eigen::Vector2d way = Eigen::Vector2d(x + 0.5, y + 0.5) - a;
+      const double along = std::clamp(way.dot(edge) / edge.squaredNorm(), 0.0, 1.0);
+      if ((way - along * edge).norm() > reach) continue;
+      texels[static_cast<std::size_t>(y) * picture.width + x] = HitMap::ask;
+    }
+  }
+}
+
 }  // namespace luxel

@@ -30,4 +30,8 @@ PlanePicture plane_picture(const Occluders& occluders, std::span<const int> tria
 void draw_patches(const PatchMesh& mesh, std::span<const int> patches, const PlanePicture& picture,
                   std::span<std::int32_t> texels);
 
+/// Writes HitMap::ask into each texel that the segment between two points crosses.
+void draw_doubt(const PlanePicture& picture, const Vec3& from, const Vec3& to,
+                std::span<std::int32_t> texels);
+
 }  // namespace luxel

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <memory>
+
+#include "luxel/gather_operator.h"
+#include "transport/gather/gather_rays.h"
+
+namespace luxel {
+
+/// What solve_gathered() gives, with what it worked with, for those who go on from there.
+struct GatheredLight {
+  GatheredSolution solution;
+  std::unique_ptr<GatherRays> rays;
+  std::unique_ptr<GatherOperator> stored;  ///< of the rays that were iterated on
+};
+
+/// solve_gathered(). The mesh and the ray scene must outlive the result.
+GatheredLight gather_light(const PatchMesh& mesh, const RayScene& occluders, const PatchField& reflectance,
+                           const PatchField& emission, const GatherOptions& options,
+                           const SolveOptions& solving, const Progress& progress);
+
+}  // namespace luxel
