@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 
 #include "command_options.h"
+#include "gathered_run.h"
 #include "help_text.h"
 #include "luxel/input_error.h"
 #include "suggestion.h"
@@ -77,6 +78,20 @@ void check_operator(const CLI::App& app, const OperatorOptions& options) {
   }
 }
 
+// Commands that need every entry.
+void check_dense(const CLI::App& app, const OperatorOptions& options) {
+  if (options.kind != OperatorKind::gather) return;
+  throw InputError(
+      fmt::format("{}: found --operator gather, expected dense: it needs every form factor", app.get_name()));
+}
+
+// What a gather has no use for.
+void check_gather(const SolveCommand& command) {
+  if (command.transport.kind != OperatorKind::gather) return;
+  const std::string reason = gather_cannot(command);
+  if (!reason.empty()) throw InputError(fmt::format("solve: found --operator gather with {}", reason));
+}
+
 void check_bounces(const SolveOptions& options) {
   if (!options.bounces || options.method == Method::automatic || options.method == Method::neumann) return;
   throw InputError(
@@ -105,6 +120,7 @@ Command parse_command_line(int argc, const char* const* argv) {
               "given again");
   add_full_precision(*solve_app, solve.full_precision);
   add_operator(*solve_app, solve.transport);
+  add_error_bar(*solve_app, solve.error_bar);
   add_solver(*solve_app, solve.solve);
   add_plan(*solve_app, solve.savings);
   add_general(*solve_app, solve.general);
@@ -168,11 +184,13 @@ Command parse_command_line(int argc, const char* const* argv) {
     check_scene(*solve_app, solve.scene);
     check_operator(*solve_app, solve.transport);
     check_bounces(solve.solve);
+    check_gather(solve);
     return solve;
   }
   if (*factors_app) {
     check_scene(*factors_app, factors.scene);
     check_operator(*factors_app, factors.transport);
+    check_dense(*factors_app, factors.transport);
     return factors;
   }
   if (*inspect_app) {
@@ -182,6 +200,7 @@ Command parse_command_line(int argc, const char* const* argv) {
   if (*compare_app) {
     check_scene(*compare_app, compare.scene);
     check_operator(*compare_app, compare.transport);
+    check_dense(*compare_app, compare.transport);
     return compare;
   }
   if (*stress_app) {

@@ -32,8 +32,12 @@ std::size_t solve_bytes(int patches, Precision precision, std::optional<Method> 
   return static_cast<std::size_t>(bytes);
 }
 
+std::size_t memory_limit(std::size_t limit) {
+  return limit > 0 ? limit : machine_bytes();
+}
+
 void check_memory(std::size_t estimate, std::size_t limit, int patches) {
-  const std::size_t allowed = limit > 0 ? limit : machine_bytes();
+  const std::size_t allowed = memory_limit(limit);
   if (estimate <= allowed) return;
   throw InputError(fmt::format(
       "--memory: {} patches need about {}, more than the {} {}; fewer --patches need less", patches,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "gathered_run.h"
 #include "memory_plan.h"
 #include "output_files.h"
 
@@ -38,11 +39,31 @@ PlanOptions plan_options(const SolveCommand& command) {
   options.form_factors = command.transport.form_factors;
   options.solve = command.solve;
   if (command.solve.bounces) options.solve.method = Method::neumann;
+  options.error_bar = command.error_bar && !command.solve.bounces;
   options.everything = !command.transport.load.empty() || !command.transport.save.empty();
   // a time series shows the whole scene at each step
   options.together = std::any_of(command.outputs.begin(), command.outputs.end(),
                                  [](const std::string& file) { return extension_of(file) == ".pvd"; });
   return options;
+}
+
+std::string gather_cannot(const SolveCommand& command) {
+  const OperatorOptions& transport = command.transport;
+  const auto only_dense = [](const char* option) {
+    return std::string(option) + ", which only dense can do";
+  };
+  if (!transport.save.empty()) return only_dense("--save");
+  if (!transport.load.empty()) return only_dense("--load");
+  if (transport.form_factors.visibility == Visibility::exact) return only_dense("--visibility exact");
+  if (command.solve.bounces) return only_dense("--bounces");
+  const Method method = command.solve.method;
+  if (method != Method::automatic && method != Method::neumann && method != Method::gmres) {
+    return "--solver " + std::string(name(method)) + ", expected neumann, gmres or auto: it is not symmetric";
+  }
+  for (const std::string& file : command.outputs) {
+    if (extension_of(file) == ".pvd") return only_dense(("-o " + file).c_str());
+  }
+  return {};
 }
 
 PlannedRun::PlannedRun(const SolveCommand& command, std::function<bool(const Iteration&)> on_iteration)
@@ -53,6 +74,32 @@ PlannedRun::PlannedRun(const SolveCommand& command, std::function<bool(const Ite
 RadiositySolution PlannedRun::run(Assembly& assembly, const Progress& progress, Report& report) {
   watch_ = Stopwatch();
   stage_start_ = {};
+  PlannedSolution light = gathers(assembly.mesh) ? gather(assembly, progress, report)
+                                                         : follow_plan(assembly, progress, report);
+  report.transport->candidates = candidates_;
+  report_solver(light, report);
+  if (light.operator_error) assembly.operator_error = *light.operator_error;
+  return std::move(light.solution);
+}
+
+/// Whether the light is to be gathered: as asked, or as the scene calls for where all that is asked allows
+/// it.
+bool PlannedRun::gathers(const PatchMesh& mesh) {
+  const OperatorOptions& asked = command_.transport;
+  if (asked.kind != OperatorKind::automatic || !asked.load.empty() || !asked.save.empty()) {
+    return asked.kind == OperatorKind::gather;
+  }
+  if (!gather_cannot(command_).empty()) return false;
+  const OperatorChoice choice =
+      choose_operator(mesh, options_, static_cast<double>(memory_limit(command_.general.memory)));
+  for (const OperatorEstimate& each : choice.estimates) {
+    candidates_.push_back({std::string(name(each.kind)), each.cost.cpu_seconds,
+                           static_cast<std::uint64_t>(each.cost.bytes), each.fits});
+  }
+  return choice.kind == OperatorKind::gather;
+}
+
+PlannedSolution PlannedRun::follow_plan(Assembly& assembly, const Progress& progress, Report& report) {
   const bool at_hand = assembly.transport != nullptr;
   Enclosures& enclosures = assembly.record.enclosures;
   if (!at_hand) enclosures = planned_enclosures(assembly.mesh, options_, progress);
@@ -61,8 +108,16 @@ RadiositySolution PlannedRun::run(Assembly& assembly, const Progress& progress, 
       at_hand ? run_plan(plan_, *assembly.transport, assembly.mesh, options_, listener(progress))
               : run_plan(plan_, assembly.mesh, enclosures, options_, listener(progress));
   if (!at_hand) report_systems(assembly, light, report);
-  report_solver(light, report);
-  return std::move(light.solution);
+  return light;
+}
+
+PlannedSolution PlannedRun::gather(Assembly& assembly, const Progress& progress, Report& report) {
+  const Cost cost = estimated_gather_cost(assembly.mesh, options_);
+  check_memory(static_cast<std::size_t>(cost.bytes), command_.general.memory, assembly.mesh.size());
+  GatheredRun run = run_gathered(assembly.mesh, options_, listener(progress));
+  for (const LeftOut& item : run.left_out) report.left_out.push_back({item.what, item.why, item.saved});
+  report_gather(assembly, run, report);
+  return std::move(run.light);
 }
 
 void PlannedRun::plan(const Assembly& assembly, const Enclosures& enclosures, Report& report) {
@@ -77,7 +132,9 @@ PlanListener PlannedRun::listener(const Progress& progress) {
 
 void PlannedRun::enter(PlanStage stage) {
   const Seconds now = watch_.elapsed();
-  (stage_ == PlanStage::assembling ? assembling_ : solving_) += now - stage_start_;
+  (stage_ == PlanStage::assembling ? assembling_
+   : stage_ == PlanStage::solving  ? solving_
+                                   : measuring_) += now - stage_start_;
   stage_ = stage;
   stage_start_ = now;
 }
@@ -97,6 +154,23 @@ void PlannedRun::report_systems(Assembly& assembly, const PlannedSolution& light
   report_operator(assembly, "dense", light.operator_bytes, assembling_, report);
 }
 
+void PlannedRun::report_gather(Assembly& assembly, const GatheredRun& run, Report& report) const {
+  OperatorRecord& record = assembly.record;
+  record.options = options_.form_factors;
+  record.enclosures = run.enclosures;
+  record.form_factors.rays = run.light.rays;
+  // rows are compared with rays of their own on the patches of the error bar; in closed enclosures no ray was
+  // lost
+  if (run.light.operator_error) {
+    assembly.rows.max = run.light.operator_error->row_sum_error_max;
+    assembly.rows.rms = run.light.operator_error->row_sum_error_rms;
+  } else {
+    assembly.rows.max = assembly.rows.rms = run.enclosures.closed ? 0 : not_known;
+  }
+  report_operator(assembly, "gather", run.light.operator_bytes, assembling_, report);
+  report.transport->reciprocity_error = run.light.reciprocity_error;
+}
+
 void PlannedRun::report_solver(const PlannedSolution& light, Report& report) const {
   const SolveReport& solved = light.solution.report;
   Report::Solver figures;
@@ -111,6 +185,11 @@ void PlannedRun::report_solver(const PlannedSolution& light, Report& report) con
   figures.history = history(solved.history);
   report.solver = figures;
   report.error = Report::Error{.algebraic = solved.error_bound};
+  if (light.operator_error) {
+    report.error->operator_estimate = light.operator_error->estimate;
+    report.error->operator_low = light.operator_error->low;
+    report.error->operator_high = light.operator_error->high;
+  }
   report.energy = figures_of(light.energy);
 }
 

@@ -13,7 +13,7 @@ namespace {
 // Error of single patches' irradiance: error_at_one rays^-error_order, measured on the Cornell box
 // (docs/decisions/0010-gather.md). The lower one holds for packets that are small against their polygon,
 // where the fit takes the noise of neighbours out.
-constexpr double error_at_one = 0.45, fitted_error_at_one = 0.33, error_order = 0.67;
+constexpr double error_at_one = 0.52, fitted_error_at_one = 0.36, error_order = 0.67;
 constexpr int patches_of_large_polygon = 2000;
 
 constexpr int least_rays = 16, most_rays = 1 << 20;

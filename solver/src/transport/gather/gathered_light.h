@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 
 #include "luxel/gather_operator.h"
@@ -14,9 +15,12 @@ struct GatheredLight {
   std::unique_ptr<GatherOperator> stored;  ///< of the rays that were iterated on
 };
 
-/// solve_gathered(). The mesh and the ray scene must outlive the result.
+enum class GatherStage { rays, iteration };
+
+/// solve_gathered(); tells at the start of each stage, which come in turn. The mesh and the ray scene must outlive the result.
 GatheredLight gather_light(const PatchMesh& mesh, const RayScene& occluders, const PatchField& reflectance,
                            const PatchField& emission, const GatherOptions& options,
-                           const SolveOptions& solving, const Progress& progress);
+                           const SolveOptions& solving, const Progress& progress,
+                           const std::function<void(GatherStage)>& on_stage = {});
 
 }  // namespace luxel

@@ -204,7 +204,8 @@ RadiositySolution iterate(const PatchMesh& mesh, const GatherOperator& stored, c
 
 GatheredLight gather_light(const PatchMesh& mesh, const RayScene& occluders, const PatchField& reflectance,
                            const PatchField& emission, const GatherOptions& options,
-                           const SolveOptions& solving, const Progress& progress) {
+                           const SolveOptions& solving, const Progress& progress,
+                           const std::function<void(GatherStage)>& on_stage) {
   if (reflectance.rows() != emission.rows() || reflectance.cols() != emission.cols()) {
     throw std::invalid_argument("solve_gathered: reflectance and emission differ in shape");
   }
@@ -227,7 +228,9 @@ GatheredLight gather_light(const PatchMesh& mesh, const RayScene& occluders, con
   light.rays = std::make_unique<GatherRays>(mesh, occluders, report.plan.rays, options.seed);
   const GatherRays& rays = *light.rays;
   light.stored = stored_rays(rays, report.plan.stored_rays, mesh, progress);
+  if (on_stage) on_stage(GatherStage::iteration);
   RadiositySolution iterated = iterate(mesh, *light.stored, reflectance, emission, source, apart, solving);
+  if (on_stage) on_stage(GatherStage::rays);
   solution.light.report = std::move(iterated.report);
 
   const FinalGather gather(mesh, rays, *light.stored, options.fit && apart);
