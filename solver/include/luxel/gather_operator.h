@@ -20,7 +20,9 @@ namespace luxel {
 
 /// How the irradiance is gathered by rays. The door for most users is solve_gathered().
 struct GatherOptions {
-  double accuracy = 0.01;  ///< asked relative RMS error of single patches' irradiance, in (0, 1); sets `rays`
+  /// asked relative RMS error of single patches' irradiance, in (0, 1); sets the rays: from a usual law,
+  /// then, in solve_gathered(), from the noise that a sample of packets shows
+  double accuracy = 0.01;
   std::optional<int> rays = {};  ///< rays from each patch, >= 16; overrides `accuracy`
   std::optional<int> stored_rays =
       {};  ///< of these kept to iterate on, >= 16; by default a quarter, see gather_plan

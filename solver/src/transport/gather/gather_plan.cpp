@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "luxel/gather_operator.h"
+#include "transport/gather/net_size.h"
 
 namespace luxel {
 
@@ -15,8 +16,6 @@ namespace {
 // where the fit takes the noise of neighbours out.
 constexpr double error_at_one = 0.52, fitted_error_at_one = 0.36, error_order = 0.67;
 constexpr int patches_of_large_polygon = 2000;
-
-constexpr int least_rays = 16, most_rays = 1 << 20;
 
 // Hits stored in all, where a quarter of the rays would be more: what is iterated on is an average over so
 // many that its own error does not show.
@@ -30,16 +29,6 @@ constexpr std::size_t most_lamps = 256;
 
 void require(bool holds, const std::string& message) {
   if (!holds) throw std::invalid_argument("gather: " + message);
-}
-
-/// The least of 2^k and 3 2^k that is not below x: whole nets of the sequence.
-int net_size(double x) {
-  int size = least_rays;
-  while (size < x) {
-    if (size + size / 2 >= x) return size + size / 2;
-    size *= 2;
-  }
-  return size;
 }
 
 }  // namespace

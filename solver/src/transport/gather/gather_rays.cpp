@@ -29,12 +29,28 @@ constexpr int replacements = 8;
 
 // Streams of random numbers, all seeded by patch or packet.
 constexpr std::uint64_t own_stream = 0x67617468, shared_stream = 0x73686172, replacement_stream = 0x7265706c,
-                        single_stream = 0x73696e67;
+                        single_stream = 0x73696e67, sample_stream = 0x73616d70;
+
+// Rays that trace_sample() can be asked for.
+constexpr int most_rays_sampled = 1024;
 
 // With more triangles a packet shares whole directions: through small triangles, rays that are nearly
 // parallel part too soon, and where little is merged there is no plane over which neighbours' noise could be
 // fitted.
 constexpr std::size_t large_scene = 100'000;
+
+// Packets whose rays are sorted together: 8,192 patches; at 64 rays from each some 20 MB for each thread.
+constexpr std::size_t sorted_packets = 512;
+constexpr int sorted_rays = 64;
+
+// Rays of one packet between two visits to the sums: their patches stay in the first cache.
+constexpr int rays_a_visit = 128;
+
+/// Whether most packets hold patches of many polygons in a large scene.
+bool rough(const PatchMesh& mesh) {
+  return mesh.occluders.triangles.size() > large_scene &&
+         mesh.size() < 2 * lanes * static_cast<double>(mesh.occluders.polygon_count);
+}
 
 /// Shared upper digits of each of a direction's two numbers: with half the net's digits in each, no two rays
 /// of a patch share them all.
@@ -72,15 +88,13 @@ GatherRays::GatherRays(const PatchMesh& mesh, const RayScene& occluders, int cou
                        int most)
     : mesh_(mesh),
       occluders_(occluders),
-      count_(count),
       seed_(seed),
       packets_(packets_of(mesh)),
       map_(mesh, HitMap::texels_for(mesh.size(), std::max(count, most))),
-      words_(reversed_sobol_words(count)),
       enclosures_(closed_cells(mesh, occluders)) {
   scene_.embree = occluders.embree_scene();
-  scene_.words = words_.data();
-  scene_.lower_digits = map_.triangles().size() > large_scene ? 0 : 0xffffffffu >> shared_digits(count);
+  set_count(count);
+  if (rough(mesh)) together_ = sorted_packets;
   scene_.map = &map_;
   scene_.nothing = mesh.size();
   const bool any = std::any_of(enclosures_.begin(), enclosures_.end(), [](int cell) { return cell >= 0; });
@@ -96,7 +110,7 @@ const PatchLocator& GatherRays::locator() const {
   return *locator_;
 }
 
-PacketFrame GatherRays::frame_of(const GatherOperator::Packet& packet) const {
+PacketFrame GatherRays::frame_of(const GatherOperator::Packet& packet, std::uint64_t seed_of_all) const {
   PacketFrame frame;
   const Vec3 tangent = mesh_.normals[packet[0]].unitOrthogonal();
   for (int k = 0; k < lanes; ++k) {
@@ -117,27 +131,73 @@ PacketFrame GatherRays::frame_of(const GatherOperator::Packet& packet) const {
       frame.bitangent[c][k] = static_cast<float>(bitangent[c]);
     }
     frame.share[k] = static_cast<float>(own.share);
-    const std::uint64_t seed = mixed_seed(seed_ ^ own_stream, patch);
+    const std::uint64_t seed = mixed_seed(seed_of_all ^ own_stream, patch);
     for (int q = 0; q < 4; ++q) frame.seeds[q][k] = static_cast<std::uint32_t>(mixed_seed(seed, q));
     frame.enclosure[k] = enclosures_[patch];
     frame.valid[k] = packet[k] >= 0 ? -1 : 0;
   }
-  const std::uint64_t seed = mixed_seed(seed_ ^ shared_stream, packet[0]);
+  const std::uint64_t seed = mixed_seed(seed_of_all ^ shared_stream, packet[0]);
   for (int q = 0; q < 2; ++q) frame.shared_seeds[q] = static_cast<std::uint32_t>(mixed_seed(seed, q));
   return frame;
 }
 
 void GatherRays::trace(std::size_t packet, int first, int count, std::uint32_t* met) const {
-  const PacketFrame frame = frame_of(packets_[packet]);
+  const PacketFrame frame = frame_of(packets_[packet], seed_);
   std::vector<DoubtfulRay> doubtful;
   trace_packet(scene_, frame, first, count, met, doubtful);
   settle(packets_[packet], first, doubtful, met);
 }
 
+int GatherRays::rays_together() const {
+  return together_ == 1 ? rays_a_visit : sorted_rays;
+}
+
+void GatherRays::trace_together(std::size_t first_packet, std::size_t packets, int first, int count,
+                                std::uint32_t* met) const {
+  const std::size_t of_packet = static_cast<std::size_t>(count) * lanes;
+  if (together_ == 1) {
+    for (std::size_t p = 0; p < packets; ++p) trace(first_packet + p, first, count, met + p * of_packet);
+    return;
+  }
+  std::vector<PacketFrame> frames;
+  for (std::size_t p = 0; p < packets; ++p) frames.push_back(frame_of(packets_[first_packet + p], seed_));
+  static thread_local SortedRays sorted;
+  trace_sorted(scene_, frames, first, count, met, sorted);
+  std::stable_sort(sorted.doubtful.begin(), sorted.doubtful.end(),
+                   [](const DoubtfulRay& a, const DoubtfulRay& b) {
+                     return std::pair(a.ray, a.lane) < std::pair(b.ray, b.lane);
+                   });
+  for (auto from = sorted.doubtful.begin(); from != sorted.doubtful.end();) {
+    const int packet = from->ray / count;
+    std::vector<DoubtfulRay> of_one;
+    for (; from != sorted.doubtful.end() && from->ray / count == packet; ++from) {
+      of_one.push_back(*from);
+      of_one.back().ray -= packet * count;
+    }
+    settle(packets_[first_packet + packet], first, of_one, met + packet * of_packet);
+  }
+}
+
+void GatherRays::trace_sample(std::size_t packet, int sample, int count, std::uint32_t* met) const {
+  const PacketFrame frame = frame_of(packets_[packet], mixed_seed(seed_ ^ sample_stream, sample));
+  std::vector<DoubtfulRay> doubtful;
+  trace_packet(scene_, frame, 0, count, met, doubtful);
+  settle(packets_[packet], 0, doubtful, met);
+}
+
+bool GatherRays::set_count(int count) {
+  count_ = count;
+  words_ = reversed_sobol_words(std::max(count, most_rays_sampled));
+  scene_.words = words_.data();
+  const std::uint32_t digits = scene_.lower_digits;
+  scene_.lower_digits = map_.triangles().size() > large_scene ? 0 : 0xffffffffu >> shared_digits(count);
+  return scene_.lower_digits == digits;
+}
+
 void GatherRays::trace_patch(int patch, const PatchNet& net, std::uint64_t seed, std::uint32_t* met) const {
   GatherOperator::Packet packet;
   packet.fill(patch);
-  PacketFrame frame = frame_of(packet);
+  PacketFrame frame = frame_of(packet, seed_);
   const std::uint64_t own = mixed_seed(seed ^ single_stream, patch);
   for (int q = 0; q < 4; ++q) {
     std::fill_n(frame.seeds[q], lanes, static_cast<std::uint32_t>(mixed_seed(own, q)));

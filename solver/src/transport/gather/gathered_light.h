@@ -17,7 +17,8 @@ struct GatheredLight {
 
 enum class GatherStage { rays, iteration };
 
-/// solve_gathered(); tells at the start of each stage, which come in turn. The mesh and the ray scene must outlive the result.
+/// solve_gathered(); tells at the start of each stage, which come in turn. The mesh and the ray scene must
+/// outlive the result.
 GatheredLight gather_light(const PatchMesh& mesh, const RayScene& occluders, const PatchField& reflectance,
                            const PatchField& emission, const GatherOptions& options,
                            const SolveOptions& solving, const Progress& progress,

@@ -10,7 +10,7 @@ namespace luxel {
 
 /// From what a ray met (a triangle of the occluders, its side, barycentric coordinates) to the patch there,
 /// by a picture of each polygon's side whose texels hold patch numbers: vector code can read it. Boundaries
-/// between patches are moved by half a texel at most; where that could lose a whole patch, or where another
+/// between patches are blurred by a texel at most; where that could lose a whole patch, or where another
 /// polygon stands between the two, the texel says `ask`, and PatchLocator knows. Memory: 16 to 64 bytes a
 /// patch, 48 a triangle.
 class HitMap {

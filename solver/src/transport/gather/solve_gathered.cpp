@@ -13,6 +13,7 @@
 #include "transport/gather/gathered_light.h"
 #include "transport/gather/packet_fit.h"
 #include "transport/gather/packets.h"
+#include "transport/gather/rays_needed.h"
 #include "transport/gather/stored_rays.h"
 
 namespace luxel {
@@ -21,9 +22,6 @@ namespace {
 
 constexpr int lanes = GatherOperator::lanes;
 constexpr std::size_t packets_a_task = 4;
-
-// Rays of a packet between two visits to the sums: their patches stay in the first cache.
-constexpr int rays_a_visit = 128;
 
 // Columns in one pass over the hits.
 constexpr int columns_a_pass = 4;
@@ -73,8 +71,9 @@ void add(const PackedField& field, std::span<const std::uint32_t> met, PacketFie
 /// F X with all rays: those stored, then the rest of the same net, which are not.
 class FinalGather {
  public:
-  FinalGather(const PatchMesh& mesh, const GatherRays& rays, const GatherOperator& stored, bool fit)
-      : mesh_(mesh), rays_(rays), stored_(stored), fit_(fit) {}
+  /// @param kept  of the stored rays: those that belong to the same nets, all or none
+  FinalGather(const PatchMesh& mesh, const GatherRays& rays, const GatherOperator& stored, int kept, bool fit)
+      : mesh_(mesh), rays_(rays), stored_(stored), kept_(kept), fit_(fit) {}
 
   PatchField operator()(const PatchField& x, const Progress& progress, double& smoothed,
                         std::vector<double>& row_sums) const {
@@ -83,29 +82,21 @@ class FinalGather {
     PatchField gathered(x.rows(), x.cols());
     std::vector<double> shares(rays_.packets().size(), 0.0);
     row_sums.assign(x.rows(), 0.0);
-    StageProgress stage(progress, "gather", std::max<double>(1, static_cast<double>(rays_.packets().size())));
-    const tbb::blocked_range<std::size_t> all(0, rays_.packets().size(), packets_a_task);
+    const std::size_t packets = rays_.packets().size(), together = rays_.packets_together();
+    StageProgress stage(progress, "gather", std::max<double>(1, static_cast<double>(packets)));
+    const tbb::blocked_range<std::size_t> all(0, (packets + together - 1) / together,
+                                              std::max<std::size_t>(1, packets_a_task / together));
     tbb::parallel_for(all, [&](const tbb::blocked_range<std::size_t>& range) {
       if (stage.cancelled()) return;
-      std::vector<PacketField> sums(fields.size()), halves(fields.size());
-      for (std::size_t p = range.begin(); p < range.end(); ++p) {
-        const Lost lost = sum_up(p, fields, sums, halves);
-        const auto& packet = rays_.packets()[p];
-        const std::span<const int> patches(packet.data(), used_lanes(packet));
-        for (std::size_t k = 0; k < patches.size(); ++k) {
-          row_sums[patches[k]] = 1 - static_cast<double>(lost[k]) / rays_.count();
+      std::vector<PacketSums> sums(together);
+      for (std::size_t block = range.begin(); block < range.end(); ++block) {
+        const std::size_t first = block * together, count = std::min(together, packets - first);
+        sum_up(first, count, fields, sums);
+        for (std::size_t k = 0; k < count; ++k) {
+          shares[first + k] = finish(first + k, sums[k], gathered, row_sums);
         }
-        for (std::size_t f = 0; f < fields.size(); ++f) {
-          if (fit_) shares[p] += fit_packet(mesh_, patches, halves[f], sums[f]) / fields.size();
-          const auto column = static_cast<Eigen::Index>(f) * columns_a_pass;
-          for (std::size_t k = 0; k < patches.size(); ++k) {
-            for (Eigen::Index c = column; c < std::min(x.cols(), column + columns_a_pass); ++c) {
-              gathered(patches[k], c) = sums[f][k][c - column];
-            }
-          }
-        }
+        stage.add(static_cast<double>(count));
       }
-      stage.add(static_cast<double>(range.size()));
     });
     stage.finish();
     smoothed = 0;
@@ -114,47 +105,82 @@ class FinalGather {
   }
 
  private:
-  using Lost = std::array<int, lanes>;  // rays of each patch that met nothing
+  /// Of one packet: sums over its rays for each packed field, those over the first half, and how many rays of
+  /// each patch met nothing.
+  struct PacketSums {
+    std::vector<PacketField> all, half;
+    std::array<int, lanes> lost;
+  };
 
-  /// Means over all rays of a packet, and over the first half of them.
-  Lost sum_up(std::size_t p, const std::vector<PackedField>& fields, std::vector<PacketField>& sums,
-              std::vector<PacketField>& halves) const {
-    for (PacketField& sum : sums) sum.fill(Eigen::Array4d::Zero());
-    const int count = rays_.count(), half = count / 2, kept = stored_.rays();
-    std::array<std::uint32_t, rays_a_visit * lanes> fresh;
-    const auto nothing = static_cast<std::uint32_t>(mesh_.size());
-    Lost lost{};
+  /// Means over all rays of some packets, and over the first half of them.
+  void sum_up(std::size_t first, std::size_t packets, const std::vector<PackedField>& fields,
+              std::vector<PacketSums>& sums) const {
+    for (PacketSums& sum : sums) {
+      sum.all.resize(fields.size());
+      for (PacketField& field : sum.all) field.fill(Eigen::Array4d::Zero());
+      sum.lost.fill(0);
+    }
+    const int count = rays_.count(), half = count / 2;
+    const int a_visit = rays_.rays_together();
+    std::vector<std::uint32_t> fresh(packets * a_visit * lanes);
     for (int q = 0; q < count;) {
       // up to the end of the stored ones, the half, a visit
-      int end = std::min(count, q + rays_a_visit);
-      if (q < kept) end = std::min(end, kept);
+      int end = std::min(count, q + a_visit);
+      if (q < kept_) end = std::min(end, kept_);
       if (q < half) end = std::min(end, half);
       const std::size_t rays = static_cast<std::size_t>(end - q) * lanes;
-      std::span<const std::uint32_t> met(fresh.data(), rays);
-      if (q < kept) {
-        met = stored_.hits(p).subspan(static_cast<std::size_t>(q) * lanes, rays);
-      } else {
-        rays_.trace(p, q, end - q, fresh.data());
-      }
-      for (std::size_t f = 0; f < fields.size(); ++f) add(fields[f], met, sums[f]);
-      for (std::size_t m = 0; m < met.size(); m += lanes) {
-        for (int k = 0; k < lanes; ++k) lost[k] += met[m + k] == nothing;
+      if (q >= kept_) rays_.trace_together(first, packets, q, end - q, fresh.data());
+      for (std::size_t p = 0; p < packets; ++p) {
+        std::span<const std::uint32_t> met(fresh.data() + p * rays, rays);
+        if (q < kept_) met = stored_.hits(first + p).subspan(static_cast<std::size_t>(q) * lanes, rays);
+        add_up(met, fields, sums[p]);
+        if (end == half) sums[p].half = sums[p].all;
       }
       q = end;
-      if (q == half) halves = sums;
     }
-    for (std::size_t f = 0; f < fields.size(); ++f) {
-      for (int k = 0; k < lanes; ++k) {
-        sums[f][k] /= count;
-        halves[f][k] /= half;
+    for (std::size_t p = 0; p < packets; ++p) {
+      for (std::size_t f = 0; f < fields.size(); ++f) {
+        for (int k = 0; k < lanes; ++k) {
+          sums[p].all[f][k] /= count;
+          sums[p].half[f][k] /= half;
+        }
       }
     }
-    return lost;
+  }
+
+  void add_up(std::span<const std::uint32_t> met, const std::vector<PackedField>& fields,
+              PacketSums& sums) const {
+    const auto nothing = static_cast<std::uint32_t>(mesh_.size());
+    for (std::size_t f = 0; f < fields.size(); ++f) add(fields[f], met, sums.all[f]);
+    for (std::size_t m = 0; m < met.size(); m += lanes) {
+      for (int k = 0; k < lanes; ++k) sums.lost[k] += met[m + k] == nothing;
+    }
+  }
+
+  /// Smooths a packet and puts it where it belongs; gives the mean share by which it followed its fits.
+  double finish(std::size_t p, PacketSums& sums, PatchField& gathered, std::vector<double>& row_sums) const {
+    const auto& packet = rays_.packets()[p];
+    const std::span<const int> patches(packet.data(), used_lanes(packet));
+    double share = 0;
+    for (std::size_t k = 0; k < patches.size(); ++k) {
+      row_sums[patches[k]] = 1 - static_cast<double>(sums.lost[k]) / rays_.count();
+    }
+    for (std::size_t f = 0; f < sums.all.size(); ++f) {
+      if (fit_) share += fit_packet(mesh_, patches, sums.half[f], sums.all[f]) / sums.all.size();
+      const auto column = static_cast<Eigen::Index>(f) * columns_a_pass;
+      for (std::size_t k = 0; k < patches.size(); ++k) {
+        for (Eigen::Index c = column; c < std::min(gathered.cols(), column + columns_a_pass); ++c) {
+          gathered(patches[k], c) = sums.all[f][k][c - column];
+        }
+      }
+    }
+    return share;
   }
 
   const PatchMesh& mesh_;
   const GatherRays& rays_;
   const GatherOperator& stored_;
+  int kept_;
   bool fit_;
 };
 
@@ -226,19 +252,30 @@ GatheredLight gather_light(const PatchMesh& mesh, const RayScene& occluders, con
     source = reflectance.cwiseProduct(solution.direct);
   }
   light.rays = std::make_unique<GatherRays>(mesh, occluders, report.plan.rays, options.seed);
-  const GatherRays& rays = *light.rays;
+  GatherRays& rays = *light.rays;
   light.stored = stored_rays(rays, report.plan.stored_rays, mesh, progress);
   if (on_stage) on_stage(GatherStage::iteration);
   RadiositySolution iterated = iterate(mesh, *light.stored, reflectance, emission, source, apart, solving);
   if (on_stage) on_stage(GatherStage::rays);
   solution.light.report = std::move(iterated.report);
 
-  const FinalGather gather(mesh, rays, *light.stored, options.fit && apart);
+  bool usable = true;
+  if (!options.rays) {
+    const PatchField about = apart ? PatchField(solution.direct + iterated.irradiance) : iterated.irradiance;
+    const Eigen::RowVectorXd whole = norms(mesh, about) / std::sqrt(total_area(mesh));
+    const int needed = rays_needed(mesh, rays, iterated.radiosity, whole, options.fit && apart,
+                                   report.plan.rays, options.accuracy);
+    report.plan.rays = std::max(needed, report.plan.stored_rays);
+    usable = rays.set_count(report.plan.rays);
+  }
+  const FinalGather gather(mesh, rays, *light.stored, usable ? report.plan.stored_rays : 0,
+                           options.fit && apart);
   PatchField& irradiance = solution.light.irradiance;
   irradiance = gather(iterated.radiosity, progress, report.smoothed, solution.row_sums);
   if (apart) irradiance += solution.direct;
   solution.light.radiosity = emission + reflectance.cwiseProduct(irradiance);
-  report.rays = static_cast<std::int64_t>(mesh.size()) * report.plan.rays;
+  const std::int64_t once_more = usable ? 0 : report.plan.stored_rays;
+  report.rays = static_cast<std::int64_t>(mesh.size()) * (report.plan.rays + once_more);
   report.asked_twice = rays.asked_twice();
   report.bytes = light.stored->bytes() + rays.bytes();
   return light;
