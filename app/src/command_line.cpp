@@ -119,6 +119,7 @@ Command parse_command_line(int argc, const char* const* argv) {
               "Write this file, by its extension .vtp .vtu .pvd .csv .json .ply .png .exr or .hdr; may be "
               "given again");
   add_full_precision(*solve_app, solve.full_precision);
+  add_keep_partial(*solve_app, solve.keep_partial);
   add_operator(*solve_app, solve.transport);
   add_error_bar(*solve_app, solve.error_bar);
   add_solver(*solve_app, solve.solve);

@@ -247,6 +247,16 @@ void add_error_bar(CLI::App& app, bool& error_bar) {
       ->group(transport);
 }
 
+void add_keep_partial(CLI::App& app, bool& keep_partial) {
+  app.add_flag(
+         "--keep-partial", keep_partial,
+         wrapped(
+             "After Ctrl-C, once there is light at all, write what is solved so far, as FILE.partial.EXT; "
+             "else nothing is written",
+             description_width))
+      ->group(output);
+}
+
 void add_outputs(CLI::App& app, std::vector<std::string>& outputs, const char* description) {
   app.add_option("-o,--output", outputs, wrapped(description, description_width))
       ->type_name("FILE")

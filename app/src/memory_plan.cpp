@@ -13,6 +13,9 @@ namespace {
 // The program with its libraries loaded [bytes], measured.
 constexpr double program_bytes = 64e6;
 
+// The patches themselves, and the scene that they are cut from [bytes a patch], measured.
+constexpr double mesh_patch_bytes = 300;
+
 // Patches, clusters, ray scene, three channels of everything and the writers' buffers [bytes a patch],
 // measured.
 constexpr double patch_bytes = 1500;
@@ -20,12 +23,12 @@ constexpr double patch_bytes = 1500;
 }  // namespace
 
 std::size_t mesh_bytes(int patches) {
-  return static_cast<std::size_t>(program_bytes + patch_bytes * patches);
+  return static_cast<std::size_t>(program_bytes + mesh_patch_bytes * patches);
 }
 
 std::size_t solve_bytes(int patches, Precision precision, std::optional<Method> method) {
   const double n = patches;
-  double bytes = static_cast<double>(mesh_bytes(patches));
+  double bytes = program_bytes + patch_bytes * n;
   bytes += n * (n - 1) / 2 * (precision == Precision::float32 ? 4 : 8);
   if (method == Method::cholesky) bytes += n * (n + 1) / 2 * 8;
   if (method == Method::lu) bytes += n * n * 8;

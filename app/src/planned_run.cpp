@@ -40,6 +40,7 @@ PlanOptions plan_options(const SolveCommand& command) {
   options.solve = command.solve;
   if (command.solve.bounces) options.solve.method = Method::neumann;
   options.error_bar = command.error_bar && !command.solve.bounces;
+  options.keep_partial = command.keep_partial;
   options.everything = !command.transport.load.empty() || !command.transport.save.empty();
   // a time series shows the whole scene at each step
   options.together = std::any_of(command.outputs.begin(), command.outputs.end(),
@@ -74,8 +75,8 @@ PlannedRun::PlannedRun(const SolveCommand& command, std::function<bool(const Ite
 RadiositySolution PlannedRun::run(Assembly& assembly, const Progress& progress, Report& report) {
   watch_ = Stopwatch();
   stage_start_ = {};
-  PlannedSolution light = gathers(assembly.mesh) ? gather(assembly, progress, report)
-                                                         : follow_plan(assembly, progress, report);
+  PlannedSolution light =
+      gathers(assembly.mesh) ? gather(assembly, progress, report) : follow_plan(assembly, progress, report);
   report.transport->candidates = candidates_;
   report_solver(light, report);
   if (light.operator_error) assembly.operator_error = *light.operator_error;

@@ -27,6 +27,7 @@ struct GatherOptions {
   std::optional<int> stored_rays =
       {};  ///< of these kept to iterate on, >= 16; by default a quarter, see gather_plan
   std::optional<int> shadow_rays = {};  ///< from a patch to a lamp that it sees in part, >= 16
+  bool keep_partial = false;            ///< see GatherReport::partial
   bool fit = true;                      ///< smooth the noise between neighbours on one plane where they agree
   std::uint64_t seed = 0;               ///< another seed, another sample of the same error
 };
@@ -113,7 +114,10 @@ struct GatherReport {
   std::int64_t asked_twice = 0;  ///< rays that float left in doubt, settled in double precision
   int partly_lit = 0;            ///< patches in or next to a penumbra
   double smoothed = 0;           ///< mean share by which the packets followed their fit, in [0, 1]
-  std::size_t bytes = 0;         ///< held for the rays: those kept, and the map from hits to patches
+  /// Stopped by on_iteration, or (with keep_partial, instead of Cancelled) by progress after the iteration:
+  /// the light is that of the stored rays alone.
+  bool partial = false;
+  std::size_t bytes = 0;  ///< held for the rays: those kept, and the map from hits to patches
 };
 
 /// Radiosity and irradiance with how they were gathered; `light.report` is that of the iteration on the

@@ -51,6 +51,9 @@ struct PlanOptions {
   bool everything = false;
   /// Estimate the operator's error besides, at most an eighth more rays or time; not with counted bounces.
   bool error_bar = false;
+  /// Of a gather that progress cancels after its iteration, give the light of the rays at hand; see
+  /// GatherReport.
+  bool keep_partial = false;
 };
 
 /// One thing that is left out, in words for a report.

@@ -61,7 +61,7 @@ constexpr double probe_ray = 2;
 constexpr double gather_patch = 4e-6;
 
 // Mesh, fields and pictures of a gather [a patch], and its ray scene [a triangle].
-constexpr double gather_patch_bytes = 450, triangle_bytes = 250;
+constexpr double gather_patch_bytes = 320, triangle_bytes = 230;
 
 // Beyond this the factor's N^2 / 2 float32 numbers are 0.5 GB, and it would take hundreds of columns to pay.
 constexpr double largest_factor = 16'000;

@@ -3,6 +3,7 @@
 #include <limits>
 #include <utility>
 
+#include "luxel/input_error.h"
 #include "luxel/plan.h"
 #include "operator_error/coarse_exchange.h"
 #include "operator_error/probed_error.h"
@@ -61,6 +62,7 @@ GatherOptions gather_options(const PlanOptions& options) {
   GatherOptions gather;
   gather.accuracy = options.form_factors.accuracy;
   gather.seed = options.form_factors.seed;
+  gather.keep_partial = options.keep_partial;
   return gather;
 }
 
@@ -97,40 +99,54 @@ GatheredRun run_gathered(const PatchMesh& mesh, const PlanOptions& options, cons
     solving.on_iteration = [&, tell = options.solve.on_iteration](const Iteration& iteration) {
       Iteration told = iteration;
       PatchField whole;
-      if (iteration.radiosity) {
+      if (iteration.radiosity && channels.solved.size() < channels.source.size()) {
         whole = expanded(*iteration.radiosity, channels);
         told.radiosity = &whole;
       }
       return tell(told);
     };
   }
-  const PatchField rho_solved = rho(Eigen::all, channels.solved);
-  const PatchField emitted_solved = emitted(Eigen::all, channels.solved);
+  // a million patches: fields are kept once
+  const bool all_solved = channels.solved.size() == channels.source.size();
+  PatchField rho_part, emitted_part;
+  if (!all_solved) {
+    rho_part = rho(Eigen::all, channels.solved);
+    emitted_part = emitted(Eigen::all, channels.solved);
+  }
+  const PatchField& rho_solved = all_solved ? rho : rho_part;
+  const PatchField& emitted_solved = all_solved ? emitted : emitted_part;
   GatheredLight light =
       gather_light(mesh, occluders, rho_solved, emitted_solved, gather_options(options), solving,
                    listener.progress, [&](GatherStage stage) {
                      enter(stage == GatherStage::rays ? PlanStage::assembling : PlanStage::solving);
                    });
   run.gather = light.solution.report;
-  run.enclosures = gathered_enclosures(*light.stored, light.solution.row_sums, run.gather.plan.rays);
+  run.enclosures = gathered_enclosures(*light.stored, light.solution.row_sums,
+                                       run.gather.partial ? light.stored->rays() : run.gather.plan.rays);
   planned.row_sums = std::move(light.solution.row_sums);
   planned.operator_bytes = run.gather.bytes;
   planned.rays = run.gather.rays + run.gather.shadow_rays;
   planned.reciprocity_error = reciprocity_error(*light.stored);
 
-  if (options.error_bar) {
+  if (options.error_bar && !run.gather.partial) {
     enter(PlanStage::measuring);
     OperatorErrorOptions probing;
     probing.accuracy = options.form_factors.accuracy;
     probing.seed = options.form_factors.seed;
     probing.most_rays = error_bar_share * static_cast<double>(planned.rays);
-    planned.operator_error =
-        probed_error(mesh, occluders, *light.rays, *light.stored, rho_solved, emitted_solved,
-                     light.solution.light, planned.row_sums, probing, listener.progress);
+    try {
+      planned.operator_error =
+          probed_error(mesh, occluders, *light.rays, *light.stored, rho_solved, emitted_solved,
+                       light.solution.light, planned.row_sums, probing, listener.progress);
+    } catch (const Cancelled&) {
+      if (!options.keep_partial) throw;
+    }
   }
   planned.solution.report = std::move(light.solution.light.report);
-  planned.solution.radiosity = expanded(light.solution.light.radiosity, channels);
-  planned.solution.irradiance = expanded(light.solution.light.irradiance, channels);
+  RadiositySolution& found = light.solution.light;
+  planned.solution.radiosity = all_solved ? std::move(found.radiosity) : expanded(found.radiosity, channels);
+  planned.solution.irradiance =
+      all_solved ? std::move(found.irradiance) : expanded(found.irradiance, channels);
   planned.energy = energy_of(mesh, rho, emitted, planned.solution, planned.row_sums);
   enter(PlanStage::done);
   return run;

@@ -109,9 +109,10 @@ class Run {
       const double missing = std::abs(sum.emitted[c] - sum.absorbed[c] - sum.escaped[c]);
       sum.imbalance = std::max(sum.imbalance, missing / sum.emitted[c]);
     }
+    const bool stopped_early = stopped();
     result_.solution.report = report_.take();
     result_.rays = result_.form_factors.rays;
-    if (options_.error_bar && !options_.solve.bounces) measure();
+    if (options_.error_bar && !options_.solve.bounces && !stopped_early) measure();
     enter(PlanStage::done);
     return std::move(result_);
   }

@@ -53,7 +53,7 @@ GatherPlan gather_plan(const PatchMesh& mesh, const PatchField& emission, const 
   const double affordable = stored_in_all / std::max(1, mesh.size());
   const int quarter = std::max(least_rays, net_size(plan.rays / 4.0));
   plan.stored_rays = std::min(
-      plan.rays, options.stored_rays.value_or(affordable < quarter ? net_size(affordable) : quarter));
+      plan.rays, options.stored_rays.value_or(affordable < quarter ? net_within(affordable) : quarter));
   plan.shadow_rays = options.shadow_rays.value_or(plan.rays);
 
   double emitting = 0, total = 0;

@@ -15,4 +15,11 @@ constexpr int net_size(double x) {
   return size;
 }
 
+/// The largest of them that is not above x.
+constexpr int net_within(double x) {
+  int size = least_rays;
+  while (net_size(size + 1) <= x && size < most_rays) size = net_size(size + 1);
+  return size;
+}
+
 }  // namespace luxel

@@ -20,6 +20,7 @@ constexpr int lanes = GatherOperator::lanes;
 
 // Packets looked at: the noise of 16 of them is known to a tenth.
 constexpr std::size_t least_packets = 16, most_packets = 256;
+constexpr double good_packets = 96;
 
 // Rays of a look at a packet, and how many times fewer the other look at it takes: both are nets.
 constexpr int most_rays_a_look = 1024, least_rays_a_look = 64, fewer = 4;
@@ -89,8 +90,15 @@ int rays_needed(const PatchMesh& mesh, const GatherRays& rays, const PatchField&
   const Eigen::Index columns = std::min<Eigen::Index>(radiosity.cols(), 4);
   const PatchField field = radiosity.leftCols(columns);
   const std::size_t packets = rays.packets().size();
-  const int count = std::clamp(net_size(planned / 4.0), least_rays_a_look, most_rays_a_look);
-  const double affordable = sampling_share * planned * static_cast<double>(packets) / (2 * count);
+  // as many rays a look as planned, where enough packets can be looked at
+  const auto affordable_at = [&](int rays_a_look) {
+    return sampling_share * planned * static_cast<double>(packets) / (2 * rays_a_look);
+  };
+  int count = std::clamp(planned, least_rays_a_look, most_rays_a_look);
+  for (int part = 2; part <= 4 && affordable_at(count) < good_packets; part *= 2) {
+    count = std::clamp(net_size(planned / static_cast<double>(part)), least_rays_a_look, most_rays_a_look);
+  }
+  const double affordable = affordable_at(count);
   const std::size_t looks = std::min(
       packets, static_cast<std::size_t>(std::clamp<double>(affordable, least_packets, most_packets)));
   std::vector<Scatter> scatters(looks);

@@ -201,8 +201,7 @@ double largest_share(const Eigen::RowVectorXd& part, const Eigen::RowVectorXd& w
 
 /// Solves for `source`, with the tolerance and the residuals relative to the emission.
 RadiositySolution iterate(const PatchMesh& mesh, const GatherOperator& stored, const PatchField& reflectance,
-                          const PatchField& emission, const PatchField& source, bool apart,
-                          SolveOptions solving) {
+                          const PatchField& emission, PatchField source, bool apart, SolveOptions solving) {
   const Eigen::RowVectorXd emitted = norms(mesh, emission);
   const double relative = largest_share(norms(mesh, source), emitted);
   solving = iteration(mesh, reflectance, solving);
@@ -220,10 +219,25 @@ RadiositySolution iterate(const PatchMesh& mesh, const GatherOperator& stored, c
     };
   }
   RadiositySolution iterated = solve(stored, reflectance, source, solving);
-  const PatchField left = source + reflectance.cwiseProduct(iterated.irradiance) - iterated.radiosity;
-  iterated.report.relative_residual = largest_share(norms(mesh, left), emitted);
+  // in the place of the source, which is not needed any more
+  source += reflectance.cwiseProduct(iterated.irradiance) - iterated.radiosity;
+  iterated.report.relative_residual = largest_share(norms(mesh, source), emitted);
   for (Iteration& iteration : iterated.report.history) iteration.relative_residual *= relative;
   return iterated;
+}
+
+/// As many rays as the sample calls for, and no fewer than are stored.
+int rays_needed_for(const PatchMesh& mesh, const GatheredLight& light, const RadiositySolution& iterated,
+                    const GatherOptions& options) {
+  const GatheredSolution& solution = light.solution;
+  const GatherPlan& plan = solution.report.plan;
+  const bool apart = plan.direct_apart;
+  PatchField whole = iterated.irradiance;
+  if (apart) whole += solution.direct;
+  const Eigen::RowVectorXd level = norms(mesh, whole) / std::sqrt(total_area(mesh));
+  const int needed = rays_needed(mesh, *light.rays, iterated.radiosity, level, options.fit && apart,
+                                 plan.rays, options.accuracy);
+  return std::max(needed, plan.stored_rays);
 }
 
 }  // namespace
@@ -255,27 +269,34 @@ GatheredLight gather_light(const PatchMesh& mesh, const RayScene& occluders, con
   GatherRays& rays = *light.rays;
   light.stored = stored_rays(rays, report.plan.stored_rays, mesh, progress);
   if (on_stage) on_stage(GatherStage::iteration);
-  RadiositySolution iterated = iterate(mesh, *light.stored, reflectance, emission, source, apart, solving);
+  RadiositySolution iterated =
+      iterate(mesh, *light.stored, reflectance, emission, std::move(source), apart, solving);
   if (on_stage) on_stage(GatherStage::rays);
   solution.light.report = std::move(iterated.report);
 
-  bool usable = true;
-  if (!options.rays) {
-    const PatchField about = apart ? PatchField(solution.direct + iterated.irradiance) : iterated.irradiance;
-    const Eigen::RowVectorXd whole = norms(mesh, about) / std::sqrt(total_area(mesh));
-    const int needed = rays_needed(mesh, rays, iterated.radiosity, whole, options.fit && apart,
-                                   report.plan.rays, options.accuracy);
-    report.plan.rays = std::max(needed, report.plan.stored_rays);
-    usable = rays.set_count(report.plan.rays);
-  }
-  const FinalGather gather(mesh, rays, *light.stored, usable ? report.plan.stored_rays : 0,
-                           options.fit && apart);
   PatchField& irradiance = solution.light.irradiance;
-  irradiance = gather(iterated.radiosity, progress, report.smoothed, solution.row_sums);
+  report.rays = static_cast<std::int64_t>(mesh.size()) * report.plan.stored_rays;
+  report.partial = solution.light.report.stopped == Stopped::caller;
+  if (!report.partial) {
+    if (!options.rays) report.plan.rays = rays_needed_for(mesh, light, iterated, options);
+    const int known = rays.set_count(report.plan.rays) ? report.plan.stored_rays : 0;
+    iterated.irradiance.resize(0, 0);
+    try {
+      const FinalGather gather(mesh, rays, *light.stored, known, options.fit && apart);
+      irradiance = gather(iterated.radiosity, progress, report.smoothed, solution.row_sums);
+      report.rays += static_cast<std::int64_t>(mesh.size()) * (report.plan.rays - known);
+    } catch (const Cancelled&) {
+      if (!options.keep_partial) throw;
+      report.partial = true;
+    }
+  }
+  if (report.partial) {
+    irradiance.resize(emission.rows(), emission.cols());
+    light.stored->apply(iterated.radiosity.data(), irradiance.data(), static_cast<int>(emission.cols()));
+    solution.row_sums.assign(light.stored->row_sums().begin(), light.stored->row_sums().end());
+  }
   if (apart) irradiance += solution.direct;
   solution.light.radiosity = emission + reflectance.cwiseProduct(irradiance);
-  const std::int64_t once_more = usable ? 0 : report.plan.stored_rays;
-  report.rays = static_cast<std::int64_t>(mesh.size()) * (report.plan.rays + once_more);
   report.asked_twice = rays.asked_twice();
   report.bytes = light.stored->bytes() + rays.bytes();
   return light;
