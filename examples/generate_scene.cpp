@@ -6,10 +6,13 @@
 //   generate_scene street HOUSES K M    an open street: ground K x K, HOUSES boxes standing on it, M x M
 //   quads a side generate_scene torus K              a torus in an inward sphere, about K triangles each
 //   generate_scene ball K               a rough ball seen from inside, about K triangles, no two in one
-//   plane,
-//                                       and a square lamp (group lamp) under its top
+//                                       plane, and a square lamp (group lamp) under its top
+//   generate_scene blocks K             a closed unit room with two turned blocks and a lamp in the ceiling,
+//                                       K x K quads a side, K a multiple of 8; about 7.4 K^2 quads
+//   generate_scene finishes FILE        the scene file (JSON) that gives the blocks of FILE their finishes
 //
-// Each writes to standard output; groups: room or ground, box<i>, sphere, torus. Material: white.
+// Each writes to standard output; groups: room or ground, box<i>, sphere, torus. Material: white; of blocks:
+// floor, ceiling, lamp, left, right, front, back, block.
 
 #include <cmath>
 #include <cstdio>
@@ -43,16 +46,28 @@ class ObjWriter {
 
   // A parallelogram corner + s u + t v cut into n x m quads; its front is where u x v points.
   void grid(Point corner, Point u, Point v, int n, int m) {
+    part_of_grid(grid_vertices(corner, u, v, n, m), n, m, [](int, int) { return true; });
+  }
+
+  // The quads of a grid as above whose (i, j) satisfy `wanted`, with vertices from an earlier call on.
+  template <class Wanted>
+  void part_of_grid(int first, int n, int m, Wanted wanted) {
+    for (int j = 0; j < m; ++j) {
+      for (int i = 0; i < n; ++i) {
+        const int a = first + j * (n + 1) + i;
+        if (wanted(i, j)) std::printf("f %d %d %d %d\n", a, a + 1, a + n + 2, a + n + 1);
+      }
+    }
+  }
+  int grid_vertices(Point corner, Point u, Point v, int n, int m) {
     const int first = vertices_ + 1;
     for (int j = 0; j <= m; ++j) {
       for (int i = 0; i <= n; ++i) vertex(corner + double(i) / n * u + double(j) / m * v);
     }
-    for (int j = 0; j < m; ++j) {
-      for (int i = 0; i < n; ++i) {
-        const int a = first + j * (n + 1) + i;
-        std::printf("f %d %d %d %d\n", a, a + 1, a + n + 2, a + n + 1);
-      }
-    }
+    return first;
+  }
+  void begin_material(const std::string& name) {
+    std::printf("g %s\nusemtl %s\n", name.c_str(), name.c_str());
   }
 
   // The six sides of a box with edge vectors u, v, w (right-handed), seen from outside or from inside.
@@ -145,6 +160,56 @@ void write_boxes(ObjWriter& obj, int count, int room_cells, int box_cells) {
   }
 }
 
+// A block of square ground plan, turned about the vertical y.
+void write_block(ObjWriter& obj, double x, double z, double half, double bottom, double height, double angle,
+                 int k) {
+  const Point u = {2 * half * std::cos(angle), 0, 2 * half * std::sin(angle)};
+  const Point w = {-2 * half * std::sin(angle), 0, 2 * half * std::cos(angle)};
+  const Point v = {0, height, 0}, corner = Point{x, bottom, z} - 0.5 * (u + w);
+  const int across = std::max(1, static_cast<int>(std::lround(2 * half * k)));
+  const int up = std::max(1, static_cast<int>(std::lround(height * k)));
+  obj.grid(corner, u, w, across, across);
+  obj.grid(corner + v, w, u, across, across);
+  obj.grid(corner, v, u, up, across);
+  obj.grid(corner + w, u, v, across, up);
+  obj.grid(corner, w, v, across, up);
+  obj.grid(corner + u, v, w, up, across);
+}
+
+void write_blocks(ObjWriter& obj, int k) {
+  const Point o = {0, 0, 0}, x = {1, 0, 0}, y = {0, 1, 0}, z = {0, 0, 1};
+  const auto wall = [&](const char* name, Point corner, Point u, Point v) {
+    obj.begin_material(name);
+    obj.grid(corner, u, v, k, k);
+  };
+  wall("floor", o, z, x);
+  wall("left", o, y, z);
+  wall("right", x, z, y);
+  wall("back", o, x, y);
+  wall("front", z, y, x);
+  const auto lit = [&](int i, int j) {
+    const auto inside = [&](int c) { return c >= 3 * k / 8 && c < 5 * k / 8; };
+    return inside(i) && inside(j);
+  };
+  const int first = obj.grid_vertices(y, x, z, k, k);
+  obj.begin_material("ceiling");
+  obj.part_of_grid(first, k, k, [&](int i, int j) { return !lit(i, j); });
+  obj.begin_material("lamp");
+  obj.part_of_grid(first, k, k, lit);
+  obj.begin_material("block");
+  write_block(obj, 0.33, 0.35, 0.15, 0.04, 0.6, 0.3, k);
+  write_block(obj, 0.68, 0.66, 0.15, 0.04, 0.3, -0.29, k);
+}
+
+void write_finishes(const std::string& file) {
+  std::printf("{\n  \"mesh\": \"%s\",\n  \"materials\": {\n", file.c_str());
+  std::puts("    \"floor\": {\"reflectance\": 0.7},\n    \"ceiling\": {\"reflectance\": 0.8},");
+  std::puts("    \"left\": {\"reflectance\": 0.3},\n    \"right\": {\"reflectance\": 0.5},");
+  std::puts("    \"back\": {\"reflectance\": 0.6},\n    \"front\": {\"reflectance\": 0.6},");
+  std::puts("    \"block\": {\"reflectance\": 0.7},");
+  std::puts("    \"lamp\": {\"reflectance\": 0.8, \"exitance\": 10}\n  }\n}");
+}
+
 void write_street(ObjWriter& obj, int houses, int ground_cells, int house_cells) {
   const double plot = 20, width = 12, road = 16;
   const int a_row = (houses + 1) / 2;
@@ -192,10 +257,17 @@ void write_ball(ObjWriter& obj, int triangles) {
 int main(int count, char** arguments) {
   const auto number = [&](int i, int otherwise) { return count > i ? std::atoi(arguments[i]) : otherwise; };
   const std::string kind = count > 1 ? arguments[1] : "";
-  if (count < 3 || number(2, 0) < 1) {
+  if (kind == "finishes" && count > 2) {
+    write_finishes(arguments[2]);
+    return std::fflush(stdout) == 0 ? 0 : 1;
+  }
+  if (count < 3 || number(2, 0) < 1 || (kind == "blocks" && number(2, 0) % 8 != 0)) {
     std::fputs(
-        "usage: generate_scene cube K | room K [M] | boxes COUNT K M | street HOUSES K M | torus K | ball "
-        "K\n",
+        "usage: generate_scene cube K | room K [M] | boxes COUNT K M | street HOUSES K M | torus K | ball K "
+        "| "
+        "blocks 
+        "K "
+        "(a multiple of 8) | finishes FILE\n",
         stderr);
     return 2;
   }
@@ -217,6 +289,8 @@ int main(int count, char** arguments) {
     write_torus(obj, k);
   } else if (kind == "ball") {
     write_ball(obj, k);
+  } else if (kind == "blocks") {
+    write_blocks(obj, k);
   } else {
     std::fprintf(stderr, "generate_scene: unknown scene '%s'\n", kind.c_str());
     return 2;

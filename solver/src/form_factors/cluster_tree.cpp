@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "form_factors/coplanar_groups.h"
+#include "form_factors/working_frame.h"
 
 namespace luxel {
 
@@ -23,20 +24,9 @@ constexpr double normal_weight = 0.3;
 // scattered ones (facets of a curved body that happen to be coplanar) are gathered by position instead.
 constexpr double filled_share = 0.1;
 
-std::vector<WorkPatch> work_patches(const PatchMesh& mesh, const Vec3& centre, double scale) {
+std::vector<WorkPatch> work_patches(const PatchMesh& mesh, const WorkingFrame& frame) {
   std::vector<WorkPatch> patches(mesh.size());
-  for (int p = 0; p < mesh.size(); ++p) {
-    WorkPatch& patch = patches[p];
-    patch.outline.count = mesh.corner_count(p);
-    for (int k = 0; k < patch.outline.count; ++k) {
-      patch.outline.corners[k] = (mesh.vertices[mesh.corners[p][k]] - centre) * scale;
-    }
-    patch.plane = plane_through(patch.outline);
-    patch.centroid = centroid(patch.outline);
-    patch.area = area(patch.outline, patch.plane.normal);
-    patch.edge = longest_edge(patch.outline);
-    patch.patch = p;
-  }
+  for (int p = 0; p < mesh.size(); ++p) patches[p] = work_patch(mesh, p, frame);
   return patches;
 }
 
@@ -289,22 +279,10 @@ class Builder {
 }  // namespace
 
 ClusterTree cluster_tree(const PatchMesh& mesh) {
-  Vec3 low = Vec3::Constant(infinity), high = -low;
-  for (int p = 0; p < mesh.size(); ++p) {
-    for (int k = 0; k < mesh.corner_count(p); ++k) {
-      low = low.cwiseMin(mesh.vertices[mesh.corners[p][k]]);
-      high = high.cwiseMax(mesh.vertices[mesh.corners[p][k]]);
-    }
-  }
-  if (mesh.size() == 0) low = high = Vec3::Zero();
-  const Vec3 centre = 0.5 * (low + high);
-  int exponent = 1;
-  const double diagonal = (high - low).norm();
-  if (diagonal > 0) std::frexp(diagonal, &exponent);
-  const double scale = std::ldexp(1.0, 1 - exponent);
-  ClusterTree tree = Builder(work_patches(mesh, centre, scale)).build();
-  tree.centre = centre;
-  tree.scale = scale;
+  const WorkingFrame frame = working_frame(mesh);
+  ClusterTree tree = Builder(work_patches(mesh, frame)).build();
+  tree.centre = frame.centre;
+  tree.scale = frame.scale;
   return tree;
 }
 

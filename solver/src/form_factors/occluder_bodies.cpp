@@ -1,6 +1,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <numeric>
 #include <utility>
@@ -64,18 +65,24 @@ bool reaches_into(const WorkPatch& patch, std::span<const OccluderFace> body) {
   return area(rest, patch.plane.normal) > touching_share * patch.area;
 }
 
-bool anything_inside(const Occluder& body, std::span<const OccluderFace> faces, const ClusterTree& tree,
-                     const PatchMesh& mesh) {
-  for (const WorkPatch& patch : tree.patches) {
-    const double reach = body.radius + patch.edge + side_tolerance;
-    if ((patch.centroid - body.centre).squaredNorm() > reach * reach) continue;
-    const int polygon = mesh.polygons[patch.patch];
-    const bool own =
-        std::any_of(faces.begin(), faces.end(), [&](const auto& face) { return face.polygon == polygon; });
+bool anything_inside(const Occluder& body, std::span<const OccluderFace> faces, const PatchMesh& mesh,
+                     const WorkingFrame& frame) {
+  for (int p = 0; p < mesh.size(); ++p) {
+    const Vec3 middle = frame(mesh.centroids[p]);
+    double radius = 0;
+    for (int k = 0; k < mesh.corner_count(p); ++k) {
+      radius = std::max(radius, (frame(mesh.vertices[mesh.corners[p][k]]) - middle).squaredNorm());
+    }
+    const double reach = body.radius + std::sqrt(radius) + side_tolerance;
+    if ((middle - body.centre).squaredNorm() > reach * reach) continue;
+    const WorkPatch patch = work_patch(mesh, p, frame);
+    const bool own = std::any_of(faces.begin(), faces.end(),
+                                 [&](const auto& face) { return face.polygon == mesh.polygons[p]; });
     // a second sheet back to back with a face of the body looks into it
-    const bool outward = own && std::any_of(faces.begin(), faces.end(), [&](const auto& face) {
-                           return face.polygon == polygon && face.plane.normal.dot(patch.plane.normal) > 0.5;
-                         });
+    const bool outward =
+        own && std::any_of(faces.begin(), faces.end(), [&](const auto& face) {
+          return face.polygon == mesh.polygons[p] && face.plane.normal.dot(patch.plane.normal) > 0.5;
+        });
     if (!outward && reaches_into(patch, faces)) return true;
   }
   return false;
@@ -93,8 +100,8 @@ void bound(Occluder& occluder, std::span<const OccluderFace> faces) {
 
 }  // namespace
 
-std::vector<Occluder> join_bodies(std::vector<OccluderFace>& faces, const ClusterTree& tree,
-                                  const PatchMesh& mesh) {
+std::vector<Occluder> join_bodies(std::vector<OccluderFace>& faces, const PatchMesh& mesh,
+                                  const WorkingFrame& frame) {
   const auto left = edges_of(faces);
   std::vector<int> parent(faces.size());
   std::iota(parent.begin(), parent.end(), 0);
@@ -130,7 +137,7 @@ std::vector<Occluder> join_bodies(std::vector<OccluderFace>& faces, const Cluste
     bound(body, own);
     const bool whole = members.size() >= 4 && members.size() <= Occluder::max_faces &&
                        std::all_of(members.begin(), members.end(), [&](int f) { return closed[f]; }) &&
-                       convex(faces, members) && !anything_inside(body, own, tree, mesh);
+                       convex(faces, members) && !anything_inside(body, own, mesh, frame);
     if (!whole) {
       for (int f = begin; f < end; ++f) {
         occluders.push_back({f, f + 1, {}, ordered[f].centre, ordered[f].radius});

@@ -46,6 +46,19 @@ bool splits(const Plane& plane, std::span<const Vec3> points) {
   return false;
 }
 
+// Every vertex that a patch has, once, in working coordinates.
+std::vector<Vec3> corners_of_patches(const PatchMesh& mesh, const WorkingFrame& frame) {
+  std::vector<char> used(mesh.vertices.size());
+  for (int p = 0; p < mesh.size(); ++p) {
+    for (int k = 0; k < mesh.corner_count(p); ++k) used[mesh.corners[p][k]] = 1;
+  }
+  std::vector<Vec3> corners;
+  for (std::size_t k = 0; k < used.size(); ++k) {
+    if (used[k]) corners.push_back(frame(mesh.vertices[k]));
+  }
+  return corners;
+}
+
 }  // namespace
 
 OccluderFace occluder_face(const Polygon& outline, const Plane& plane, int polygon) {
@@ -62,14 +75,12 @@ OccluderFace occluder_face(const Polygon& outline, const Plane& plane, int polyg
   return face;
 }
 
-OccluderSet occluder_set(const PatchMesh& mesh, const ClusterTree& tree, bool keep_idle) {
+OccluderSet occluder_set(const PatchMesh& mesh, const WorkingFrame& frame, bool keep_idle) {
   std::vector<Vec3> vertices;
   vertices.reserve(mesh.occluders.vertices.size());
-  for (const Vec3& x : mesh.occluders.vertices) vertices.push_back((x - tree.centre) * tree.scale);
+  for (const Vec3& x : mesh.occluders.vertices) vertices.push_back(frame(x));
   std::vector<Vec3> corners;
-  for (const WorkPatch& patch : tree.patches) {
-    for (int k = 0; k < patch.outline.count; ++k) corners.push_back(patch.outline[k]);
-  }
+  if (!keep_idle) corners = corners_of_patches(mesh, frame);
 
   OccluderSet set;
   const auto polygons = by_polygon(mesh.occluders);
@@ -81,12 +92,16 @@ OccluderSet occluder_set(const PatchMesh& mesh, const ClusterTree& tree, bool ke
       if (piece.count >= 3) set.faces.push_back(occluder_face(piece, plane, static_cast<int>(polygon)));
     }
   }
-  set.occluders = join_bodies(set.faces, tree, mesh);
+  set.occluders = join_bodies(set.faces, mesh, frame);
   if (keep_idle) return set;
   std::erase_if(set.occluders, [&](const Occluder& occluder) {
     return !occluder.body() && !splits(set.faces[occluder.begin].plane, corners);
   });
   return set;
+}
+
+OccluderSet occluder_set(const PatchMesh& mesh, const ClusterTree& tree, bool keep_idle) {
+  return occluder_set(mesh, WorkingFrame{tree.centre, tree.scale}, keep_idle);
 }
 
 }  // namespace luxel

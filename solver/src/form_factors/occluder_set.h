@@ -6,6 +6,7 @@
 
 #include "form_factors/cluster_tree.h"
 #include "form_factors/polygon.h"
+#include "form_factors/working_frame.h"
 #include "luxel/patch_mesh.h"
 
 namespace luxel {
@@ -57,6 +58,7 @@ struct OccluderSet {
 /// have nothing behind or nothing in front of them; closed convex bodies as one. Cost: faces times vertices
 /// at worst, early exits in practice.
 /// @param keep_idle  also those that have nothing on one side
+OccluderSet occluder_set(const PatchMesh& mesh, const WorkingFrame& frame, bool keep_idle = false);
 OccluderSet occluder_set(const PatchMesh& mesh, const ClusterTree& tree, bool keep_idle = false);
 
 /// A face of the outline with its sides and its sphere.
@@ -70,7 +72,7 @@ std::vector<Polygon> convex_pieces(std::span<const Vec3> vertices,
 
 /// Joins faces that close around a convex body into one occluder each; the others stay single. A body that a
 /// patch lies in, or touches with more than an edge, is left as single faces.
-std::vector<Occluder> join_bodies(std::vector<OccluderFace>& faces, const ClusterTree& tree,
-                                  const PatchMesh& mesh);
+std::vector<Occluder> join_bodies(std::vector<OccluderFace>& faces, const PatchMesh& mesh,
+                                  const WorkingFrame& frame);
 
 }  // namespace luxel

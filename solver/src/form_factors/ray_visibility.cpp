@@ -6,7 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <stdexcept>
+
+#include "rays/occluder_scene.h"
 
 namespace luxel {
 
@@ -109,18 +110,12 @@ struct Trial {
 }  // namespace
 
 struct RayVisibility::Impl {
-  Impl(const ClusterTree& cluster_tree, std::uint64_t stream) : tree(cluster_tree), seed(stream) {}
-  ~Impl() {
-    if (scene) rtcReleaseScene(scene);
-    if (device) rtcReleaseDevice(device);
-  }
-  Impl(const Impl&) = delete;
-  Impl& operator=(const Impl&) = delete;
+  Impl(const ClusterTree& cluster_tree, const OccluderSet& set, std::uint64_t stream)
+      : tree(cluster_tree), seed(stream), occluders(set) {}
 
   const ClusterTree& tree;
   std::uint64_t seed;
-  RTCDevice device = nullptr;
-  RTCScene scene = nullptr;
+  OccluderScene occluders;
 };
 
 namespace {
@@ -180,38 +175,7 @@ class Packet {
 }  // namespace
 
 RayVisibility::RayVisibility(const ClusterTree& tree, const OccluderSet& set, std::uint64_t seed)
-    : impl_(std::make_unique<Impl>(tree, seed)) {
-  impl_->device = rtcNewDevice(nullptr);
-  if (!impl_->device) throw std::runtime_error("Embree has no device");
-  impl_->scene = rtcNewScene(impl_->device);
-  rtcSetSceneFlags(impl_->scene, RTC_SCENE_FLAG_ROBUST);
-  std::vector<std::array<unsigned, 4>> quads;
-  std::vector<Vec3> corners;
-  for (const Occluder& occluder : set.occluders) {
-    for (int f = occluder.begin; f < occluder.end; ++f) {
-      const Polygon& outline = set.faces[f].outline;
-      const auto base = static_cast<unsigned>(corners.size());
-      for (int k = 0; k < outline.count; ++k) corners.push_back(outline[k]);
-      for (unsigned k = 1; k + 1 < static_cast<unsigned>(outline.count); k += 2) {
-        const unsigned last = std::min(k + 2, static_cast<unsigned>(outline.count) - 1);
-        quads.push_back({base, base + k, base + k + 1, base + last});
-      }
-    }
-  }
-  RTCGeometry geometry = rtcNewGeometry(impl_->device, RTC_GEOMETRY_TYPE_QUAD);
-  auto* x = static_cast<float*>(rtcSetNewGeometryBuffer(
-      geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), corners.size()));
-  for (std::size_t k = 0; k < corners.size(); ++k) {
-    for (int c = 0; c < 3; ++c) x[3 * k + static_cast<std::size_t>(c)] = static_cast<float>(corners[k][c]);
-  }
-  auto* index = static_cast<unsigned*>(rtcSetNewGeometryBuffer(
-      geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT4, 4 * sizeof(unsigned), quads.size()));
-  for (std::size_t k = 0; k < quads.size(); ++k) std::copy(quads[k].begin(), quads[k].end(), index + 4 * k);
-  rtcCommitGeometry(geometry);
-  rtcAttachGeometry(impl_->scene, geometry);
-  rtcReleaseGeometry(geometry);
-  rtcCommitScene(impl_->scene);
-}
+    : impl_(std::make_unique<Impl>(tree, set, seed)) {}
 
 RayVisibility::~RayVisibility() = default;
 RayVisibility::RayVisibility(RayVisibility&&) noexcept = default;
@@ -238,7 +202,7 @@ std::vector<RayShare> RayVisibility::visible(std::span<const RayPair> pairs) con
     }
     for (double& shift : trials[k].shift) shift = unit(state = mixed(state));
   }
-  Packet packet_of_rays(impl_->scene, trials);
+  Packet packet_of_rays(impl_->occluders.scene(), trials);
   while (!open.empty()) {
     for (std::size_t k : open) {
       Trial& trial = trials[k];

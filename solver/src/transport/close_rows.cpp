@@ -50,22 +50,6 @@ double scale_entries(ExchangeMatrix& matrix, const std::vector<double>& areas, c
                                                   : scale_entries<double>(matrix, areas, d);
 }
 
-/// Takes the enclosures that did worst out of `active`; gives a patch of one of them.
-int give_up_worst(const RowScaling& scaling, const Enclosures& enclosures, std::vector<char>& active) {
-  const double worst = *std::max_element(scaling.errors.begin(), scaling.errors.end());
-  std::vector<char> lost(enclosures.count);
-  int first = -1;
-  for (std::size_t i = 0; i < active.size(); ++i) {
-    if (!active[i] || !(scaling.errors[i] >= worst / 2)) continue;
-    lost[enclosures.enclosure[i]] = 1;
-    if (first < 0) first = static_cast<int>(i);
-  }
-  for (std::size_t i = 0; i < active.size(); ++i) {
-    if (lost[enclosures.enclosure[i]]) active[i] = 0;
-  }
-  return first;
-}
-
 }  // namespace
 
 std::vector<double> row_sums(const ExchangeMatrix& exchange_areas, std::span<const double> areas) {
@@ -115,23 +99,22 @@ ClosedOperator close_rows(ExchangeMatrix exchange_areas, std::vector<double> are
   for (std::size_t i = 0; i < size; ++i) {
     active[i] = enclosures.enclosure_closed[enclosures.enclosure[i]] && sums[i] > 0;
   }
-  const auto any_active = [&] { return std::find(active.begin(), active.end(), 1) != active.end(); };
+  const SymmetricProduct product = [&](const double* x, double* y) {
+    symmetric_product(exchange_areas, x, y, 1);
+  };
   std::vector<double> diagonal(size, 0.0);
-  while (any_active()) {
-    const RowScaling scaling = scale_rows(exchange_areas, areas, active, progress);
-    report.iterations += scaling.iterations;
-    if (*std::max_element(scaling.errors.begin(), scaling.errors.end()) > closed_within) {
-      report.unclosed = give_up_worst(scaling, enclosures, active);
-      report.message = unclosed_message(report.unclosed);
-      continue;
-    }
+  const RowClosure closure =
+      close_enclosures(product, areas, enclosures.enclosure, std::move(active), closed_within, progress);
+  report.iterations = closure.iterations;
+  report.unclosed = closure.unclosed;
+  if (closure.unclosed >= 0) report.message = unclosed_message(closure.unclosed);
+  if (std::find(closure.closed.begin(), closure.closed.end(), 1) != closure.closed.end()) {
     report.applied = true;
-    report.largest_correction = scale_entries(exchange_areas, areas, scaling.factors);
+    report.largest_correction = scale_entries(exchange_areas, areas, closure.factors);
     sums = row_sums(exchange_areas, areas);
     for (std::size_t i = 0; i < size; ++i) {
-      if (active[i]) diagonal[i] = std::max(0.0, areas[i] - sums[i] * areas[i]);
+      if (closure.closed[i]) diagonal[i] = std::max(0.0, areas[i] - sums[i] * areas[i]);
     }
-    break;
   }
   auto transport =
       std::make_unique<DenseOperator>(std::move(exchange_areas), std::move(areas), std::move(diagonal));

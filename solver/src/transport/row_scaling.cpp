@@ -5,7 +5,6 @@
 
 #include "luxel/input_error.h"
 #include "luxel/vector.h"
-#include "transport/symmetric_product.h"
 
 namespace luxel {
 
@@ -13,8 +12,8 @@ namespace {
 
 using Vector = Eigen::VectorXd;
 
-// Relative row error to stop at: an order above what summing a million products in float64 rounds.
-constexpr double tolerance = 1e-13;
+// Of an enclosure's allowed row error: where scaling stops, so that what is left is surely below.
+constexpr double stop_share = 0.1;
 
 // Logarithm of the largest factor: a form factor off by 16 is no quadrature error, but a wrong matrix.
 constexpr double largest_logarithm = 1.3862943611198906;
@@ -26,19 +25,19 @@ constexpr int most_steps = 40;
 // Conjugate gradient steps inside one Newton step.
 constexpr int most_inner_steps = 200;
 
-Vector product(const ExchangeMatrix& matrix, const Vector& x) {
+Vector applied(const SymmetricProduct& product, const Vector& x) {
   Vector y(x.size());
-  symmetric_product(matrix, x.data(), y.data(), 1);
+  product(x.data(), y.data());
   return y;
 }
 
 /// Solves (diag(s) + D G D) x = b on the rows where mask is 1 to a relative residual. Source: Hestenes and
 /// Stiefel 1952.
-Vector newton_step(const ExchangeMatrix& matrix, const Vector& d, const Vector& s, const Vector& mask,
+Vector newton_step(const SymmetricProduct& product, const Vector& d, const Vector& s, const Vector& mask,
                    const Vector& b, double relative) {
   const auto apply = [&](const Vector& p) -> Vector {
     const Vector scaled = d.cwiseProduct(p);
-    return mask.cwiseProduct(s.cwiseProduct(p) + d.cwiseProduct(product(matrix, scaled)));
+    return mask.cwiseProduct(s.cwiseProduct(p) + d.cwiseProduct(applied(product, scaled)));
   };
   Vector x = Vector::Zero(b.size());
   Vector r = b;
@@ -61,17 +60,33 @@ Vector newton_step(const ExchangeMatrix& matrix, const Vector& d, const Vector& 
   return x;
 }
 
+/// Takes the enclosures that did worst out of `active`; gives a row of one of them.
+int give_up_worst(const RowScaling& scaling, std::span<const int> enclosure, std::vector<char>& active) {
+  const double worst = *std::max_element(scaling.errors.begin(), scaling.errors.end());
+  std::vector<char> lost(*std::max_element(enclosure.begin(), enclosure.end()) + 1);
+  int first = -1;
+  for (std::size_t i = 0; i < active.size(); ++i) {
+    if (!active[i] || !(scaling.errors[i] >= worst / 2)) continue;
+    lost[enclosure[i]] = 1;
+    if (first < 0) first = static_cast<int>(i);
+  }
+  for (std::size_t i = 0; i < active.size(); ++i) {
+    if (lost[enclosure[i]]) active[i] = 0;
+  }
+  return first;
+}
+
 }  // namespace
 
-RowScaling scale_rows(const ExchangeMatrix& matrix, std::span<const double> areas,
-                      std::span<const char> active, const Progress& progress) {
-  const Eigen::Index size = matrix.size();
+RowScaling scale_rows(const SymmetricProduct& product, std::span<const double> areas,
+                      std::span<const char> active, double tolerance, const Progress& progress) {
+  const auto size = static_cast<Eigen::Index>(areas.size());
   const Eigen::Map<const Vector> a(areas.data(), size);
   Vector mask(size);
   for (Eigen::Index i = 0; i < size; ++i) mask[i] = active[i] ? 1 : 0;
 
   Vector u = Vector::Zero(size), d = Vector::Ones(size);
-  Vector s = product(matrix, d);  // row sums of D G D
+  Vector s = applied(product, d);  // row sums of D G D
   const auto error_of = [&](const Vector& sums) -> Vector {
     return mask.cwiseProduct(sums.cwiseQuotient(a) - Vector::Ones(size)).cwiseAbs();
   };
@@ -87,7 +102,7 @@ RowScaling scale_rows(const ExchangeMatrix& matrix, std::span<const double> area
     const Vector gradient = mask.cwiseProduct(s - a);
     // solved as far as the quadratic step can use it
     const Vector positive = s.cwiseMax(1e-300);
-    Vector step = newton_step(matrix, d, positive, mask, -gradient, std::clamp(0.1 * error, 1e-10, 0.05));
+    Vector step = newton_step(product, d, positive, mask, -gradient, std::clamp(0.1 * error, 1e-10, 0.05));
     const double longest = step.cwiseAbs().maxCoeff();
     if (longest > 1) step /= longest;
 
@@ -100,7 +115,7 @@ RowScaling scale_rows(const ExchangeMatrix& matrix, std::span<const double> area
     for (int halving = 0; halving < 10 && !better; ++halving, fraction /= 2) {
       next_u = u + fraction * step;
       next_d = next_u.array().exp();
-      next_s = next_d.cwiseProduct(product(matrix, next_d));
+      next_s = next_d.cwiseProduct(applied(product, next_d));
       next_error = error_of(next_s).maxCoeff();
       better = next_error < 0.5 * error || potential(next_s, next_u) <= before + 1e-4 * fraction * slope;
     }
@@ -121,6 +136,24 @@ RowScaling scale_rows(const ExchangeMatrix& matrix, std::span<const double> area
   result.factors.assign(d.data(), d.data() + size);
   result.errors.assign(errors.data(), errors.data() + size);
   return result;
+}
+
+RowClosure close_enclosures(const SymmetricProduct& product, std::span<const double> areas,
+                            std::span<const int> enclosure, std::vector<char> active, double within,
+                            const Progress& progress) {
+  RowClosure closure;
+  closure.factors.assign(areas.size(), 1.0);
+  while (std::find(active.begin(), active.end(), 1) != active.end()) {
+    RowScaling scaling = scale_rows(product, areas, active, stop_share * within, progress);
+    closure.iterations += scaling.iterations;
+    if (*std::max_element(scaling.errors.begin(), scaling.errors.end()) <= within) {
+      closure.factors = std::move(scaling.factors);
+      break;
+    }
+    closure.unclosed = give_up_worst(scaling, enclosure, active);
+  }
+  closure.closed = std::move(active);
+  return closure;
 }
 
 }  // namespace luxel

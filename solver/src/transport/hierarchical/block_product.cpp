@@ -1,0 +1,198 @@
+#include "transport/hierarchical/block_product.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+namespace luxel {
+
+namespace {
+
+// Nodes of one level in one task.
+constexpr int nodes_a_task = 1024;
+
+// Parts of the blocks that run at the same time, each with sums of its own for every node: more only where
+// blocks are many for each node, or the sums would cost more than the blocks.
+constexpr std::size_t most_parts = 8;
+
+// Doubles of a node: light or irradiance at four nodes, and what is equal at all of them.
+constexpr int values_a_node = 5;
+
+template <class Block>
+void gather(std::vector<BlockList>& lists, std::vector<Block> BlockList::*blocks,
+            const std::vector<int>& number, std::vector<Block>& all) {
+  std::size_t size = 0;
+  for (const BlockList& list : lists) size += (list.*blocks).size();
+  all.reserve(size);
+  for (BlockList& list : lists) {
+    for (Block block : list.*blocks) {
+      block.r = number[block.r];
+      block.s = number[block.s];
+      all.push_back(block);
+    }
+    list.*blocks = {};
+  }
+}
+
+template <class Body>
+void for_nodes(int begin, int end, const Body& body) {
+  if (end - begin <= nodes_a_task) {
+    for (int n = begin; n < end; ++n) body(n);
+    return;
+  }
+  tbb::parallel_for(
+      tbb::blocked_range<int>(begin, end, nodes_a_task),
+      [&](const tbb::blocked_range<int>& range) {
+        for (int n = range.begin(); n < range.end(); ++n) body(n);
+      },
+      tbb::simple_partitioner());
+}
+
+}  // namespace
+
+BlockProduct::BlockProduct(ActiveTree tree, std::vector<BlockList> lists, std::vector<double> areas)
+    : tree_(std::move(tree)), areas_(std::move(areas)) {
+  gather(lists, &BlockList::scalars, tree_.number, scalars_);
+  gather(lists, &BlockList::linears, tree_.number, linears_);
+  gather(lists, &BlockList::bilinears, tree_.number, bilinears_);
+  tree_.number = {};
+  const std::size_t blocks = scalars_.size() + linears_.size() + bilinears_.size();
+  parts_ = static_cast<int>(
+      std::clamp<std::size_t>(2 * blocks / std::max<std::size_t>(tree_.nodes.size(), 1), 2, most_parts));
+}
+
+std::size_t BlockProduct::bytes() const {
+  return scalars_.size() * sizeof(ScalarBlock) + linears_.size() * sizeof(LinearBlock) +
+         bilinears_.size() * sizeof(BilinearBlock) +
+         tree_.nodes.size() * (sizeof(ActiveNode) + 16 * sizeof(float)) + areas_.size() * sizeof(double);
+}
+
+void BlockProduct::apply(const double* x, double* y, int columns) const {
+  int done = 0;
+  for (; columns - done >= 3; done += 3) apply_columns<3>(x + done, y + done, columns);
+  if (columns - done == 2) {
+    apply_columns<2>(x + done, y + done, columns);
+  } else if (columns - done == 1) {
+    apply_columns<1>(x + done, y + done, columns);
+  }
+}
+
+template <int columns>
+void BlockProduct::apply_columns(const double* x, double* y, int stride) const {
+  constexpr int size = values_a_node * columns, common = 4 * columns;
+  const std::size_t total = tree_.nodes.size() * size;
+  std::vector<double> light(total);  // at the four nodes, and their sum
+  const auto lit = [&](int n) { return light.data() + static_cast<std::size_t>(n) * size; };
+  for (std::size_t level = tree_.levels.size() - 1; level-- > 0;) {
+    for_nodes(tree_.levels[level], tree_.levels[level + 1], [&](int n) {
+      const ActiveNode& node = tree_.nodes[n];
+      double* q = lit(n);
+      if (node.single) {
+        for (int c = 0; c < columns; ++c) {
+          q[common + c] = areas_[node.unknown] * x[static_cast<std::size_t>(node.unknown) * stride + c];
+        }
+        return;
+      }
+      if (node.unknown >= 0) {
+        for (int a = 0; a < 4; ++a) {
+          const std::size_t row = static_cast<std::size_t>(node.unknown) + a;
+          for (int c = 0; c < columns; ++c) q[a * columns + c] = areas_[row] * x[row * stride + c];
+        }
+      }
+      for (int k = node.first_child; k < node.first_child + node.child_count; ++k) {
+        const std::array<float, 16>& t = tree_.transfer[k];
+        const double* child = lit(k);
+        if (tree_.nodes[k].single) {
+          for (int a = 0; a < 4; ++a) {
+            for (int c = 0; c < columns; ++c) q[a * columns + c] += t[a] * child[common + c];
+          }
+          continue;
+        }
+        for (int z = 0; z < 4; ++z) {
+          for (int a = 0; a < 4; ++a) {
+            for (int c = 0; c < columns; ++c) q[a * columns + c] += t[4 * z + a] * child[z * columns + c];
+          }
+        }
+      }
+      for (int c = 0; c < columns; ++c) {
+        q[common + c] = q[c] + q[columns + c] + q[2 * columns + c] + q[3 * columns + c];
+      }
+    });
+  }
+
+  std::vector<std::vector<double>> sums(parts_);
+  tbb::parallel_for(0, parts_, [&](int part) {
+    sums[part].assign(total, 0.0);
+    double* const h = sums[part].data();
+    const auto at = [&](int n) { return h + static_cast<std::size_t>(n) * size; };
+    const auto of_part = [&](const auto& blocks, const auto& body) {
+      const std::size_t begin = blocks.size() * part / parts_, end = blocks.size() * (part + 1) / parts_;
+      for (std::size_t k = begin; k < end; ++k) body(blocks[k]);
+    };
+    of_part(scalars_, [&](const ScalarBlock& block) {
+      double *hr = at(block.r) + common, *hs = at(block.s) + common;
+      const double *qr = lit(block.r) + common, *qs = lit(block.s) + common, value = block.value;
+      for (int c = 0; c < columns; ++c) {
+        hr[c] += value * qs[c];
+        hs[c] += value * qr[c];
+      }
+    });
+    of_part(linears_, [&](const LinearBlock& block) {
+      double *hr = at(block.r), *hs = at(block.s) + common;
+      const double *qr = lit(block.r), *qs = lit(block.s) + common;
+      for (int a = 0; a < 4; ++a) {
+        const double value = block.values[a];
+        for (int c = 0; c < columns; ++c) {
+          hr[a * columns + c] += value * qs[c];
+          hs[c] += value * qr[a * columns + c];
+        }
+      }
+    });
+    of_part(bilinears_, [&](const BilinearBlock& block) {
+      double *hr = at(block.r), *hs = at(block.s);
+      const double *qr = lit(block.r), *qs = lit(block.s);
+      for (int a = 0; a < 4; ++a) {
+        for (int b = 0; b < 4; ++b) {
+          const double value = block.values[4 * a + b];
+          for (int c = 0; c < columns; ++c) {
+            hr[a * columns + c] += value * qs[b * columns + c];
+            hs[b * columns + c] += value * qr[a * columns + c];
+          }
+        }
+      }
+    });
+  });
+
+  std::vector<double>& irradiance = sums[0];
+  for (std::size_t level = 0; level + 1 < tree_.levels.size(); ++level) {
+    for_nodes(tree_.levels[level], tree_.levels[level + 1], [&](int n) {
+      const ActiveNode& node = tree_.nodes[n];
+      double* h = irradiance.data() + static_cast<std::size_t>(n) * size;
+      for (int part = 1; part < parts_; ++part) {
+        const double* more = sums[part].data() + static_cast<std::size_t>(n) * size;
+        for (int k = 0; k < size; ++k) h[k] += more[k];
+      }
+      const double* from =
+          node.parent < 0 ? nullptr : irradiance.data() + static_cast<std::size_t>(node.parent) * size;
+      const std::array<float, 16>& t = tree_.transfer[n];
+      if (node.single) {
+        for (int c = 0; c < columns; ++c) {
+          double value = h[common + c];
+          for (int a = 0; from && a < 4; ++a) value += t[a] * from[a * columns + c];
+          y[static_cast<std::size_t>(node.unknown) * stride + c] = value;
+        }
+        return;
+      }
+      for (int z = 0; z < 4; ++z) {
+        for (int c = 0; c < columns; ++c) {
+          double value = h[z * columns + c] + h[common + c];
+          for (int a = 0; from && a < 4; ++a) value += t[4 * z + a] * from[a * columns + c];
+          h[z * columns + c] = value;
+          if (node.unknown >= 0) y[(static_cast<std::size_t>(node.unknown) + z) * stride + c] = value;
+        }
+      }
+    });
+  }
+}
+
+}  // namespace luxel

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "transport/hierarchical/block_end.h"
+
+struct RTCSceneTy;
+
+namespace luxel {
+
+/// Rays between two ends and how many of them arrived, by the nodes in whose parts of the ends they begin and
+/// end: [4 a + b].
+struct RayCount {
+  std::array<int, 16> cast{}, arrived{};
+  int all = 0, visible = 0;
+
+  bool unanimous() const { return visible == 0 || visible == all; }
+  double share() const { return all > 0 ? static_cast<double>(visible) / all : 1; }
+  /// Standard error of share(); never 0, since rays that agree may all have missed a small part.
+  double error() const;
+  /// The share at one pair of nodes; that of all where it has no rays of its own.
+  double share(int pair) const { return cast[pair] > 0 ? double(arrived[pair]) / cast[pair] : share(); }
+};
+
+/// Casts rays between ends of blocks against the occluders, sixteen at a time: one for each pair of nodes,
+/// between quasi-random points of their parts of the ends. Points depend on the seed and the two ends alone.
+class BlockRays {
+ public:
+  BlockRays(const PatchHierarchy& hierarchy, RTCSceneTy* scene, std::uint64_t seed)
+      : hierarchy_(hierarchy), scene_(scene), seed_(seed) {}
+
+  /// Adds rays up to `wanted` in all, a multiple of 16.
+  void cast(const BlockEnd& r, const BlockEnd& s, int wanted, RayCount& count) const;
+
+ private:
+  struct Point {
+    Vec3 at;
+    int node;
+  };
+  Point point(const BlockEnd& end, int node, double u, double v) const;
+
+  const PatchHierarchy& hierarchy_;
+  RTCSceneTy* scene_;
+  std::uint64_t seed_;
+};
+
+}  // namespace luxel
