@@ -265,9 +265,7 @@ int main(int count, char** arguments) {
     std::fputs(
         "usage: generate_scene cube K | room K [M] | boxes COUNT K M | street HOUSES K M | torus K | ball K "
         "| "
-        "blocks 
-        "K "
-        "(a multiple of 8) | finishes FILE\n",
+        "blocks K (a multiple of 8) | finishes FILE\n",
         stderr);
     return 2;
   }

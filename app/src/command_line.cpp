@@ -7,9 +7,9 @@
 #include <CLI/CLI.hpp>
 
 #include "command_options.h"
-#include "gathered_run.h"
 #include "help_text.h"
 #include "luxel/input_error.h"
+#include "operator_use.h"
 #include "suggestion.h"
 #include "version.h"
 
@@ -80,16 +80,16 @@ void check_operator(const CLI::App& app, const OperatorOptions& options) {
 
 // Commands that need every entry.
 void check_dense(const CLI::App& app, const OperatorOptions& options) {
-  if (options.kind != OperatorKind::gather) return;
-  throw InputError(
-      fmt::format("{}: found --operator gather, expected dense: it needs every form factor", app.get_name()));
+  if (options.kind == OperatorKind::automatic || options.kind == OperatorKind::dense) return;
+  throw InputError(fmt::format("{}: found --operator {}, expected dense: it needs every form factor",
+                               app.get_name(), name(options.kind)));
 }
 
-// What a gather has no use for.
-void check_gather(const SolveCommand& command) {
-  if (command.transport.kind != OperatorKind::gather) return;
-  const std::string reason = gather_cannot(command);
-  if (!reason.empty()) throw InputError(fmt::format("solve: found --operator gather with {}", reason));
+// What operators without entries have no use for.
+void check_use(const SolveCommand& command) {
+  const std::string reason = operator_cannot(command.transport.kind, command);
+  if (reason.empty()) return;
+  throw InputError(fmt::format("solve: found --operator {} with {}", name(command.transport.kind), reason));
 }
 
 void check_bounces(const SolveOptions& options) {
@@ -185,7 +185,7 @@ Command parse_command_line(int argc, const char* const* argv) {
     check_scene(*solve_app, solve.scene);
     check_operator(*solve_app, solve.transport);
     check_bounces(solve.solve);
-    check_gather(solve);
+    check_use(solve);
     return solve;
   }
   if (*factors_app) {

@@ -127,16 +127,16 @@ void add_operator(CLI::App& app, OperatorOptions& chosen) {
         return text == "auto" || text == "rays" || text == "exact";
       })
       ->group(transport);
-  value_option(
-      app, "--operator", "KIND", "auto, dense or gather",
-      "How light is exchanged: dense, every pair of patches; gather, rays from each patch (solve only); "
-      "auto, what the scene, the accuracy and the memory call for; default: auto",
-      [&chosen](const std::string& text) {
-        if (text == "auto") chosen.kind = OperatorKind::automatic;
-        if (text == "dense") chosen.kind = OperatorKind::dense;
-        if (text == "gather") chosen.kind = OperatorKind::gather;
-        return text == "auto" || text == "dense" || text == "gather";
-      })
+  value_option(app, "--operator", "KIND", "auto, dense, gather or hierarchical",
+               "How light is exchanged: dense, every pair of patches; gather, rays from each patch; "
+               "hierarchical, pairs of "
+               "clusters (the last two in solve only); auto, what the scene, the accuracy and the memory "
+               "call for; default: auto",
+               [&chosen](const std::string& text) {
+                 const auto kind = operator_from_name(text);
+                 if (kind) chosen.kind = *kind;
+                 return kind.has_value();
+               })
       ->group(transport);
   count_option(app, "--seed", "N", 0, UINT64_MAX, "a whole number", "Seed of the random streams; default: 1",
                [&options](std::uint64_t n) { options.seed = n; })

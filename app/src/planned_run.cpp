@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "gathered_run.h"
 #include "memory_plan.h"
+#include "operator_use.h"
 #include "output_files.h"
 
 namespace luxel::app {
@@ -48,25 +48,6 @@ PlanOptions plan_options(const SolveCommand& command) {
   return options;
 }
 
-std::string gather_cannot(const SolveCommand& command) {
-  const OperatorOptions& transport = command.transport;
-  const auto only_dense = [](const char* option) {
-    return std::string(option) + ", which only dense can do";
-  };
-  if (!transport.save.empty()) return only_dense("--save");
-  if (!transport.load.empty()) return only_dense("--load");
-  if (transport.form_factors.visibility == Visibility::exact) return only_dense("--visibility exact");
-  if (command.solve.bounces) return only_dense("--bounces");
-  const Method method = command.solve.method;
-  if (method != Method::automatic && method != Method::neumann && method != Method::gmres) {
-    return "--solver " + std::string(name(method)) + ", expected neumann, gmres or auto: it is not symmetric";
-  }
-  for (const std::string& file : command.outputs) {
-    if (extension_of(file) == ".pvd") return only_dense(("-o " + file).c_str());
-  }
-  return {};
-}
-
 PlannedRun::PlannedRun(const SolveCommand& command, std::function<bool(const Iteration&)> on_iteration)
     : command_(command), on_iteration_(std::move(on_iteration)), options_(plan_options(command)) {
   options_.solve.on_iteration = [this](const Iteration& iteration) { return record(iteration); };
@@ -75,29 +56,35 @@ PlannedRun::PlannedRun(const SolveCommand& command, std::function<bool(const Ite
 RadiositySolution PlannedRun::run(Assembly& assembly, const Progress& progress, Report& report) {
   watch_ = Stopwatch();
   stage_start_ = {};
-  PlannedSolution light =
-      gathers(assembly.mesh) ? gather(assembly, progress, report) : follow_plan(assembly, progress, report);
+  PlannedSolution light;
+  switch (chosen_operator(assembly)) {
+    case OperatorKind::gather:
+      light = gather(assembly, progress, report);
+      break;
+    case OperatorKind::hierarchical:
+      light = by_clusters(assembly, progress, report);
+      break;
+    default:
+      light = follow_plan(assembly, progress, report);
+  }
   report.transport->candidates = candidates_;
   report_solver(light, report);
   if (light.operator_error) assembly.operator_error = *light.operator_error;
   return std::move(light.solution);
 }
 
-/// Whether the light is to be gathered: as asked, or as the scene calls for where all that is asked allows
-/// it.
-bool PlannedRun::gathers(const PatchMesh& mesh) {
-  const OperatorOptions& asked = command_.transport;
-  if (asked.kind != OperatorKind::automatic || !asked.load.empty() || !asked.save.empty()) {
-    return asked.kind == OperatorKind::gather;
-  }
-  if (!gather_cannot(command_).empty()) return false;
+/// As asked, or as the scene calls for where all that is asked allows it.
+OperatorKind PlannedRun::chosen_operator(const Assembly& assembly) {
+  if (assembly.transport) return OperatorKind::dense;
+  if (command_.transport.kind != OperatorKind::automatic) return command_.transport.kind;
+  if (!operator_cannot(OperatorKind::gather, command_).empty()) return OperatorKind::dense;
   const OperatorChoice choice =
-      choose_operator(mesh, options_, static_cast<double>(memory_limit(command_.general.memory)));
+      choose_operator(assembly.mesh, options_, static_cast<double>(memory_limit(command_.general.memory)));
   for (const OperatorEstimate& each : choice.estimates) {
     candidates_.push_back({std::string(name(each.kind)), each.cost.cpu_seconds,
                            static_cast<std::uint64_t>(each.cost.bytes), each.fits});
   }
-  return choice.kind == OperatorKind::gather;
+  return choice.kind;
 }
 
 PlannedSolution PlannedRun::follow_plan(Assembly& assembly, const Progress& progress, Report& report) {
@@ -118,6 +105,22 @@ PlannedSolution PlannedRun::gather(Assembly& assembly, const Progress& progress,
   GatheredRun run = run_gathered(assembly.mesh, options_, listener(progress));
   for (const LeftOut& item : run.left_out) report.left_out.push_back({item.what, item.why, item.saved});
   report_gather(assembly, run, report);
+  return std::move(run.light);
+}
+
+PlannedSolution PlannedRun::by_clusters(Assembly& assembly, const Progress& progress, Report& report) {
+  const Cost cost = estimated_hierarchical_cost(assembly.mesh, options_);
+  check_memory(static_cast<std::size_t>(cost.bytes), command_.general.memory, assembly.mesh.size());
+  HierarchicalRun run = run_hierarchical(assembly.mesh, options_, listener(progress));
+  for (const LeftOut& item : run.left_out) report.left_out.push_back({item.what, item.why, item.saved});
+  OperatorRecord& record = assembly.record;
+  record.options = options_.form_factors;
+  record.enclosures = std::move(run.enclosures);
+  record.form_factors.rays = run.hierarchical.rays;
+  record.closure = run.light.closure;
+  assembly.rows.max = run.light.closure.before.max;
+  assembly.rows.rms = run.light.closure.before.rms;
+  report_operator(assembly, "hierarchical", run.light.operator_bytes, assembling_, report);
   return std::move(run.light);
 }
 

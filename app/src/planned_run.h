@@ -26,9 +26,10 @@ class PlannedRun {
   RadiositySolution run(Assembly& assembly, const Progress& progress, Report& report);
 
  private:
-  bool gathers(const PatchMesh& mesh);
+  OperatorKind chosen_operator(const Assembly& assembly);
   PlannedSolution follow_plan(Assembly& assembly, const Progress& progress, Report& report);
   PlannedSolution gather(Assembly& assembly, const Progress& progress, Report& report);
+  PlannedSolution by_clusters(Assembly& assembly, const Progress& progress, Report& report);
   void plan(const Assembly& assembly, const Enclosures& enclosures, Report& report);
   PlanListener listener(const Progress& progress);
   void enter(PlanStage stage);

@@ -11,6 +11,7 @@
 #include "luxel/enclosures.h"
 #include "luxel/form_factors.h"
 #include "luxel/gather_operator.h"
+#include "luxel/hierarchical_operator.h"
 #include "luxel/operator_error.h"
 #include "luxel/patch_mesh.h"
 #include "luxel/progress.h"
@@ -20,13 +21,15 @@ namespace luxel {
 
 /// How light is exchanged.
 enum class OperatorKind {
-  automatic,  ///< see choose_operator()
-  dense,      ///< every pair of patches
-  gather      ///< rays from each patch
+  automatic,    ///< see choose_operator()
+  dense,        ///< every pair of patches
+  gather,       ///< rays from each patch
+  hierarchical  ///< pairs of clusters of patches
 };
 
-/// "auto", "dense" or "gather".
+/// "auto", "dense", "gather" or "hierarchical".
 std::string_view name(OperatorKind kind);
+std::optional<OperatorKind> operator_from_name(std::string_view name);
 
 /// What may be left out. Each can be switched off alone; the result is the same to the accuracy asked for.
 struct Savings {
@@ -162,6 +165,9 @@ struct OperatorChoice {
 /// @param most_bytes  memory that may be taken
 OperatorChoice choose_operator(const PatchMesh& mesh, const PlanOptions& options, double most_bytes);
 
+/// The same of the hierarchical operator.
+Cost estimated_hierarchical_cost(const PatchMesh& mesh, const PlanOptions& options = {});
+
 enum class PlanStage { assembling, solving, measuring, done };
 
 /// Who follows a plan from outside; both may be empty.
@@ -213,5 +219,19 @@ struct GatheredRun {
 /// @throws SingularSystem; Cancelled; std::invalid_argument as solve_gathered() does
 GatheredRun run_gathered(const PatchMesh& mesh, const PlanOptions& options = {},
                          const PlanListener& listener = {});
+
+/// What run_hierarchical() gives.
+struct HierarchicalRun {
+  PlannedSolution light;  ///< `form_factors` is empty; row_sums after rows were scaled
+  Enclosures enclosures;  ///< by few rays from each patch where the surfaces prove nothing
+  HierarchicalReport hierarchical;
+  std::vector<LeftOut> left_out;
+};
+
+/// The light of a scene by clusters, all patches in one system: accuracy and seed as of form_factors, the
+/// rest as of `solve`.
+/// @throws SingularSystem; Cancelled; std::invalid_argument as solve_hierarchical() does
+HierarchicalRun run_hierarchical(const PatchMesh& mesh, const PlanOptions& options = {},
+                                 const PlanListener& listener = {});
 
 }  // namespace luxel

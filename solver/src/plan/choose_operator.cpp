@@ -41,15 +41,26 @@ std::string_view name(OperatorKind kind) {
       return "dense";
     case OperatorKind::gather:
       return "gather";
+    case OperatorKind::hierarchical:
+      return "hierarchical";
     default:
       return "auto";
   }
 }
 
+std::optional<OperatorKind> operator_from_name(std::string_view text) {
+  for (const auto kind :
+       {OperatorKind::automatic, OperatorKind::dense, OperatorKind::gather, OperatorKind::hierarchical}) {
+    if (text == name(kind)) return kind;
+  }
+  return std::nullopt;
+}
+
 OperatorChoice choose_operator(const PatchMesh& mesh, const PlanOptions& options, double most_bytes) {
   OperatorChoice choice;
   choice.estimates = {{OperatorKind::dense, dense_cost(mesh, options)},
-                      {OperatorKind::gather, estimated_gather_cost(mesh, options)}};
+                      {OperatorKind::gather, estimated_gather_cost(mesh, options)},
+                      {OperatorKind::hierarchical, estimated_hierarchical_cost(mesh, options)}};
   const OperatorEstimate* best = nullptr;
   const auto better = [](const OperatorEstimate& a, const OperatorEstimate& b) {
     if (a.fits != b.fits) return a.fits;

@@ -60,6 +60,11 @@ constexpr double probe_ray = 2;
 // A patch besides its rays: packets, pictures, direct light, iteration.
 constexpr double gather_patch = 4e-6;
 
+// Clusters and passes over them [s a patch], and pairs of clusters [s, bytes; times root of patches times
+// accuracy^-order].
+constexpr double cluster_patch = 5e-6, cluster_pairs = 3e-6, cluster_order = 1.3;
+constexpr double cluster_patch_bytes = 700, cluster_pair_bytes = 60;
+
 // Mesh, fields and pictures of a gather [a patch], and its ray scene [a triangle].
 constexpr double gather_patch_bytes = 320, triangle_bytes = 230;
 
@@ -141,6 +146,15 @@ double probe_seconds(double triangles) {
 
 double gather_seconds(double patches, double rays_a_patch, double triangles) {
   return patches * (gather_patch + rays_a_patch * gather_ray_seconds(triangles));
+}
+
+double hierarchical_seconds(double patches, double accuracy) {
+  return patches * cluster_patch + cluster_pairs * std::sqrt(patches) * std::pow(accuracy, -cluster_order);
+}
+
+double hierarchical_bytes(double patches, double accuracy) {
+  return program_bytes + cluster_patch_bytes * patches +
+         cluster_pair_bytes * std::sqrt(patches) * std::pow(accuracy, -cluster_order);
 }
 
 double gather_bytes(double patches, double triangles) {

@@ -55,7 +55,11 @@ double probe_seconds(double triangles);
 /// Everything that a gather does.
 double gather_seconds(double patches, double rays_a_patch, double triangles);
 
+/// Everything that a hierarchical operator does, in a scene of few polygons.
+double hierarchical_seconds(double patches, double accuracy);
+
 // Memory [bytes].
+double hierarchical_bytes(double patches, double accuracy);
 double gather_bytes(double patches, double triangles);
 double mesh_bytes(double patches);
 double operator_bytes(double patches, Precision precision);
