@@ -62,8 +62,8 @@ constexpr double gather_patch = 4e-6;
 
 // Clusters and passes over them [s a patch], and pairs of clusters [s, bytes; times root of patches times
 // accuracy^-order].
-constexpr double cluster_patch = 5e-6, cluster_pairs = 3e-6, cluster_order = 1.3;
-constexpr double cluster_patch_bytes = 700, cluster_pair_bytes = 60;
+constexpr double cluster_patch = 1.3e-5, cluster_pairs = 2.8e-5, cluster_order = 1.07;
+constexpr double cluster_patch_bytes = 430, cluster_pair_bytes = 1900;
 
 // Mesh, fields and pictures of a gather [a patch], and its ray scene [a triangle].
 constexpr double gather_patch_bytes = 320, triangle_bytes = 230;
