@@ -216,9 +216,10 @@ void add_comparison(CLI::App& app, CompareCommand& compare) {
       ->group(solving);
   app.add_flag(
          "--operators", compare.operators,
-         wrapped("Also compare on a coarser and a finer operator (accuracy x 10 and / 10), and with half and "
-                 "twice the patches",
-                 description_width))
+         wrapped(
+             "Also compare on a gathered, a coarser and a finer operator (accuracy x 10 and / 10), and with "
+             "half and twice the patches",
+             description_width))
       ->group(transport);
   app.add_flag("--wall", compare.wall_time, "Plot errors against wall time instead of CPU time")
       ->group(output);
@@ -271,7 +272,7 @@ void add_full_precision(CLI::App& app, bool& full_precision) {
 void add_factor_tables(CLI::App& app, FactorsCommand& factors) {
   value_option(app, "--by", "WHAT", "group", "Form factors between what: group",
                [&factors](const std::string& text) {
-                 factors.by_group = text == "group";
+                 factors.by_group = factors.transport.form_factors.group_accuracy = text == "group";
                  return factors.by_group;
                })
       ->group(output);

@@ -9,6 +9,7 @@
 #include "compare/plot.h"
 #include "compare/reference_file.h"
 #include "interruption.h"
+#include "luxel/gather_operator.h"
 #include "luxel/input_error.h"
 #include "luxel/write_file.h"
 #include "output_files.h"
@@ -22,6 +23,9 @@ namespace {
 
 // Light settings beside the scene's own, for the work-precision table: one, and ten sets of three channels.
 constexpr int few_columns = 1, many_columns = 30;
+
+// A gathered operator that is kept as a whole is not asked for more than this: it takes 40 kB a patch.
+constexpr double finest_gathered = 1e-3;
 
 // The scene's channels again and again, each time with other weights, so that no two right-hand sides are
 // alike.
@@ -48,33 +52,85 @@ std::string content(const std::string& extension, const compare::Comparison& com
   return compare::plot(comparison.runs, axis, extension.substr(1));
 }
 
-// All solvers on the system of one assembly; with more_columns also for other numbers of right-hand sides.
-void add_runs(compare::Comparison& comparison, const Assembly& assembly, const CompareCommand& command,
-              double accuracy, bool first) {
-  const TransportOperator& transport = *assembly.transport;
-  const PatchField rho = reflectance(assembly.mesh), emitted = emission(assembly.mesh);
-  if ((emitted.array() == 0).all())
-    throw InputError(command.scene.file + ": nothing emits, nothing to compare");
+// What the solvers are run on: one operator, and the light that they look for.
+struct ComparedSystem {
+  const TransportOperator& transport;
+  double accuracy;  // asked of the operator
+  PatchField reflectance;
+  PatchField emission;
+  PatchField apart;  // radiosity that is known beforehand and comes on top; empty: none
+};
+
+compare::CompareOptions compare_options(const CompareCommand& command, const TransportOperator& transport) {
   compare::CompareOptions options;
-  options.methods = command.methods.empty() ? compare::methods_for(transport) : command.methods;
+  options.methods = compare::methods_for(transport);
+  if (!command.methods.empty()) {
+    std::erase_if(options.methods, [&](Method method) {
+      return std::ranges::find(command.methods, method) == command.methods.end();
+    });
+  }
   options.tolerance = command.tolerance;
   options.stopped = [] { return interruption_requested(); };
+  return options;
+}
 
-  const compare::Reference reference = first && !command.reference.empty()
-                                           ? compare::read_reference(command.reference, assembly.mesh.size())
-                                           : compare::reference_solution(transport, rho, emitted);
-  std::vector<compare::Run> runs = compare::compare_solvers(transport, rho, emitted, reference, options);
-  for (compare::Run& run : runs) run.accuracy = accuracy;
-  comparison.runs.insert(comparison.runs.end(), runs.begin(), runs.end());
-  if (!first) return;
-  comparison.reference = reference;
+std::vector<compare::Run> runs_on(const ComparedSystem& system, const compare::Reference& reference,
+                                  const CompareCommand& command) {
+  std::vector<compare::Run> runs =
+      compare::compare_solvers(system.transport, system.reflectance, system.emission, reference,
+                               compare_options(command, system.transport));
+  for (compare::Run& run : runs) run.accuracy = system.accuracy;
+  return runs;
+}
+
+// All solvers on the scene's own system, and with other numbers of right-hand sides.
+void add_first(compare::Comparison& comparison, const ComparedSystem& system, const CompareCommand& command) {
+  comparison.reference =
+      command.reference.empty()
+          ? compare::reference_solution(system.transport, system.reflectance, system.emission)
+          : compare::read_reference(command.reference, system.transport.size());
+  comparison.runs = runs_on(system, comparison.reference, command);
   for (int columns : {few_columns, many_columns}) {
-    const PatchField wide_rho = widened(rho, columns, false), wide_emission = widened(emitted, columns, true);
-    const compare::Reference wide = compare::reference_solution(transport, wide_rho, wide_emission);
-    runs = compare::compare_solvers(transport, wide_rho, wide_emission, wide, options);
-    for (compare::Run& run : runs) run.accuracy = accuracy;
+    const ComparedSystem wide = {system.transport,
+                                 system.accuracy,
+                                 widened(system.reflectance, columns, false),
+                                 widened(system.emission, columns, true),
+                                 {}};
+    const std::vector<compare::Run> runs =
+        runs_on(wide, compare::reference_solution(wide.transport, wide.reflectance, wide.emission), command);
     comparison.more_columns.insert(comparison.more_columns.end(), runs.begin(), runs.end());
   }
+}
+
+// The solvers on another operator, against its own solution, and how far that one is from the first's.
+void add_other(compare::Comparison& comparison, const ComparedSystem& system, const CompareCommand& command) {
+  const compare::Reference own =
+      compare::reference_solution(system.transport, system.reflectance, system.emission);
+  std::vector<compare::Run> runs = runs_on(system, own, command);
+  const PatchField& first = comparison.reference.radiosity;
+  if (own.radiosity.rows() == first.rows()) {
+    const PatchField whole = system.apart.size() > 0 ? own.radiosity + system.apart : own.radiosity;
+    for (compare::Run& run : runs) run.operator_error = compare::relative_error(whole, first);
+  }
+  comparison.runs.insert(comparison.runs.end(), runs.begin(), runs.end());
+}
+
+ComparedSystem system_of(const Assembly& assembly, double accuracy) {
+  return {*assembly.transport, accuracy, reflectance(assembly.mesh), emission(assembly.mesh), {}};
+}
+
+// Gathered by rays, with the light straight from the lamps apart, as `solve` does it.
+void add_gathered(compare::Comparison& comparison, const PatchMesh& mesh, const CompareCommand& command,
+                  const Progress& progress) {
+  GatherOptions options;
+  options.accuracy = std::max(command.transport.form_factors.accuracy, finest_gathered);
+  options.seed = command.transport.form_factors.seed;
+  const RayScene occluders(mesh.occluders);
+  const PatchField rho = reflectance(mesh), emitted = emission(mesh);
+  const auto transport = gather_operator(mesh, occluders, options, progress);
+  const DirectLight direct = direct_irradiance(mesh, occluders, emitted, options, progress);
+  add_other(comparison, {*transport, options.accuracy, rho, rho.cwiseProduct(direct.irradiance), emitted},
+            command);
 }
 
 }  // namespace
@@ -85,20 +141,26 @@ ExitStatus run(const CompareCommand& command) {
   Report report = new_report("compare");
   ProgressBar bar(!command.general.quiet);
 
-  // with --operators also a coarser and a finer operator, and half and twice the patches
+  // with --operators also a gathered, a coarser and a finer operator, and half and twice the patches
   compare::Comparison comparison;
   comparison.scene = command.scene.file;
   const Assembly assembly =
       assemble(command.scene, command.transport, command.general, Method::cholesky, std::ref(bar), report);
-  add_runs(comparison, assembly, command, command.transport.form_factors.accuracy, true);
+  const double accuracy = command.transport.form_factors.accuracy;
+  const ComparedSystem first = system_of(assembly, accuracy);
+  if ((first.emission.array() == 0).all()) {
+    throw InputError(command.scene.file + ": nothing emits, nothing to compare");
+  }
+  add_first(comparison, first, command);
   if (command.operators) {
+    add_gathered(comparison, assembly.mesh, command, std::ref(bar));
     for (double factor : {10.0, 0.1}) {
       OperatorOptions options = command.transport;
-      options.form_factors.accuracy = std::clamp(options.form_factors.accuracy * factor, 1e-8, 0.1);
+      options.form_factors.accuracy = std::clamp(accuracy * factor, 1e-8, 0.1);
       Report other = report;
-      add_runs(comparison,
-               assemble(command.scene, options, command.general, Method::cholesky, std::ref(bar), other),
-               command, options.form_factors.accuracy, false);
+      const Assembly again =
+          assemble(command.scene, options, command.general, Method::cholesky, std::ref(bar), other);
+      add_other(comparison, system_of(again, options.form_factors.accuracy), command);
     }
     for (double factor : {0.5, 2.0}) {
       SceneOptions scene = command.scene;
@@ -106,9 +168,9 @@ ExitStatus run(const CompareCommand& command) {
       scene.meshing.patch_size = 0;
       scene.meshing.patches = static_cast<int>(factor * assembly.mesh.size());
       Report other = report;
-      add_runs(comparison,
-               assemble(scene, command.transport, command.general, Method::cholesky, std::ref(bar), other),
-               command, command.transport.form_factors.accuracy, false);
+      const Assembly resized =
+          assemble(scene, command.transport, command.general, Method::cholesky, std::ref(bar), other);
+      add_other(comparison, system_of(resized, accuracy), command);
     }
   }
 

@@ -1,6 +1,8 @@
 #include <unistd.h>
 
+#include <cstdlib>
 #include <ostream>
+#include <stdexcept>
 
 #include "io/scene_files.h"
 
@@ -197,11 +199,30 @@ TEST(ReadBadFile, IsRefusedWhereItIsAFolder) {
   EXPECT_EQ(files.refusal_of("room"), "room: is a directory; expected a file");
 }
 
+// Root may read everything; while this lives, the test is nobody.
+class WithoutPrivileges {
+ public:
+  WithoutPrivileges() {
+    if (was_root_ && seteuid(65534) != 0) throw std::runtime_error("seteuid failed");
+  }
+  ~WithoutPrivileges() {
+    if (was_root_ && seteuid(0) != 0) std::abort();
+  }
+  WithoutPrivileges(const WithoutPrivileges&) = delete;
+  WithoutPrivileges& operator=(const WithoutPrivileges&) = delete;
+
+ private:
+  bool was_root_ = geteuid() == 0;
+};
+
 TEST(ReadBadFile, IsRefusedWhereItMayNotBeRead) {
-  if (geteuid() == 0) GTEST_SKIP() << "root may read everything";
   SceneFiles files;
   files.with("a.obj", square_face);
   std::filesystem::permissions(files / "a.obj", std::filesystem::perms::none);
+  std::filesystem::permissions(files / "", std::filesystem::perms::others_exec,
+                               std::filesystem::perm_options::add);
+
+  const WithoutPrivileges nobody;
 
   EXPECT_EQ(files.refusal_of("a.obj"), "a.obj: cannot be read: Permission denied");
 }

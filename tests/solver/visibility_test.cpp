@@ -268,6 +268,31 @@ TEST(Visibility, ClosesARoomWithThinTiltedSheets) {
   EXPECT_LT(row_errors(factors(mesh, 1e-5), mesh).max, 2e-5);
 }
 
+// The floor in front of a slanted wall meets it in an edge whose corners are off the wall's plane by the
+// noise of six digits, to one side or the other; the wall stands in the way of what lies behind it only.
+TEST(Visibility, IsNotTakenFromAFloorByTheWallAtWhoseFootItEnds) {
+  const Vec3 left(0.1, 0.2, 0), right(0.7, 0.45, 0), up(0, 0, 0.6);
+  const Vec3 away = (right - left).cross(up).normalized();
+  for (const double noise : {-3e-9, 3e-9, -3e-10}) {
+    SceneBuilder scene;
+    const std::vector<Vec3> wall{left, right, right + up, left + up};
+    const std::vector<Vec3> front{0.5 * (left + right) + noise * away, left + 0.2 * (right - left),
+                                  0.5 * (left + right) + 0.2 * away};
+    const std::vector<Vec3> behind{left, right, left - 0.3 * away};
+    const std::vector<Vec3> opposite{Vec3(0.9, -0.4, 0.3), Vec3(0.6, -0.6, 0.3), Vec3(0.75, -0.5, 0.6)};
+    for (const auto& patch : {front, behind, opposite, wall}) scene.patch(patch, scene.polygon(patch));
+    const PatchMesh mesh = scene.take();
+    const double in_sight = exchange_area(front, opposite);
+    ASSERT_GT(in_sight, 0);
+
+    const FormFactors found = factors(mesh, 1e-6, Visibility::exact);
+
+    EXPECT_GT(found.report.occluders, 0);
+    EXPECT_NEAR(found.exchange_areas(0, 2) / in_sight, 1, 1e-6) << "noise " << noise;
+    EXPECT_EQ(found.exchange_areas(1, 2), 0);
+  }
+}
+
 TEST(Visibility, OnlyFallsWhenOccludersAreAdded) {
   const std::vector<Vec3> first = sheet(0, 0, 0.25, 0.25, 0.5), second = sheet(0.2, -0.1, 0.25, 0.15, 0.3);
   const FormFactors none = factors(facing_squares(1, 3, {}), 1e-6);

@@ -35,6 +35,9 @@ struct Run {
   double error = 0;
   double error_bound = 0;
   double condition_estimate = 0;
+  /// How far this operator's solution is from the first one's, max |B* - B*_1| / max |B*_1|; NaN for the
+  /// first operator itself and where the patches are others.
+  double operator_error = std::numeric_limits<double>::quiet_NaN();
   std::string message;
   std::vector<HistoryPoint> history;
 };

@@ -40,6 +40,7 @@ Json to_json(const Run& run) {
           {"relative_residual", number(run.relative_residual)},
           {"error", number(run.error)},
           {"error_bound", number(run.error_bound)},
+          {"operator_error", number(run.operator_error)},
           {"condition_estimate", run.condition_estimate > 0 ? number(run.condition_estimate) : Json(nullptr)},
           {"message", run.message},
           {"history", std::move(history)}};
@@ -81,6 +82,7 @@ constexpr Column columns[] = {
     {"residual", [](const Run& run) { return short_number(run.relative_residual); }},
     {"error", [](const Run& run) { return short_number(run.error); }},
     {"error bound", [](const Run& run) { return short_number(run.error_bound); }},
+    {"operator error", [](const Run& run) { return short_number(run.operator_error); }},
     {"condition",
      [](const Run& run) { return run.condition_estimate > 0 ? short_number(run.condition_estimate) : "-"; }},
     {"ended", [](const Run& run) {

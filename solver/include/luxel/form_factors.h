@@ -19,6 +19,8 @@ enum class Visibility {
 struct FormFactorOptions {
   double accuracy = 1e-3;  ///< A: raw row errors RMS <= A and largest <= 2 A; in [1e-8, 0.1]
   Visibility visibility = Visibility::automatic;
+  /// Hold the factors between groups to A as well, each relative to itself, or to 1e-3 where it is smaller.
+  bool group_accuracy = false;
   Precision precision = Precision::float32;  ///< of the stored entries; they are computed in float64
   std::uint64_t seed = 1;                    ///< of the rays' random streams
   bool keep_idle_occluders = false;  ///< look at those too that can hide nothing: as right, and slower

@@ -18,6 +18,11 @@ constexpr double volume_rounding = 1e-14;
 // Parts of a patch below this share of its area are what clipping leaves of a common edge.
 constexpr double sliver_share = 1e-12;
 
+// A patch that reaches through a face's plane by less than this share of its width touches the plane: the
+// noise of files with six digits is of that size. What is taken for wholly visible then is that share of the
+// patch.
+constexpr double touching_share = 1e-7;
+
 // Cells that the planes of faces and the events may cut one patch into.
 constexpr std::size_t most_cells = 400;
 
@@ -25,12 +30,12 @@ constexpr std::size_t most_cells = 400;
 // cheaper to look first.
 constexpr double cut_first = 2e-3;
 
-// Where the integral says that this share of a cell's exchange is hidden, it is looked at whether all of it
-// is.
-constexpr double nearly_all = 0.9;
-
 double side(const Span& span) {
   return span.high > -span.low ? span.high : span.low;
+}
+
+double touching_depth(const WorkPatch& patch) {
+  return std::max(side_tolerance, touching_share * patch.area / patch.edge);
 }
 
 }  // namespace
@@ -68,14 +73,14 @@ bool HiddenPair::own(const Occluder& occluder, const Ends& ends) const {
 std::vector<Polygon> HiddenPair::cells_by_side(const Ends& ends,
                                                const std::vector<Candidate>& candidates) const {
   std::vector<Polygon> cells{ends.cell};
-  const double length = ends.outer->edge;
+  const double length = ends.outer->edge, depth = touching_depth(*ends.outer);
   for (const Candidate& candidate : candidates) {
     const Occluder& occluder = set_.occluders[candidate.occluder];
     if (own(occluder, ends)) continue;
     for (int f = occluder.begin; f < occluder.end; ++f) {
       const Plane& plane = set_.faces[f].plane;
       const Span span = span_along(ends.cell, plane);
-      if (span.low > -side_tolerance || span.high < side_tolerance || cells.size() >= most_cells) continue;
+      if (span.low > -depth || span.high < depth || cells.size() >= most_cells) continue;
       const double slant = plane.normal.cross(ends.outer->plane.normal).norm();
       const double tolerance = std::max(side_tolerance, 1e-9 * length * slant);
       std::vector<Polygon> parts;
@@ -95,21 +100,22 @@ std::vector<Polygon> HiddenPair::cells_by_side(const Ends& ends,
 bool HiddenPair::add_cut(const Polygon& cell, const Polygon& target, const Plane& behind) {
   Vec3 ends[2];
   int found = 0;
-  Vec3 inside = target[0];
-  double deepest = -1;
+  // the corner farthest from the plane, on either side of it, tells on which side of the cut it lies
+  Vec3 farthest = target[0];
+  double height = 0;
   for (int k = 0; k < target.count; ++k) {
     const double here = behind.distance(target[k]), there = behind.distance(target.next(k));
-    if (-here > deepest) {
-      deepest = -here;
-      inside = target[k];
+    if (std::abs(here) > std::abs(height)) {
+      height = here;
+      farthest = target[k];
     }
     if ((here >= 0) == (there >= 0)) continue;
     if (found < 2) ends[found++] = target[k] + (here / (here - there)) * (target.next(k) - target[k]);
   }
   if (found < 2 || (ends[1] - ends[0]).squaredNorm() < 1e-28) return false;
   const Vec3 eye = centroid(cell);
-  const double volume = (ends[1] - eye).cross(ends[0] - eye).dot(inside - eye);
-  if (volume < 0) std::swap(ends[0], ends[1]);
+  const double volume = (ends[1] - eye).cross(ends[0] - eye).dot(farthest - eye);
+  if ((volume < 0) == (height < 0)) std::swap(ends[0], ends[1]);
   cuts_.push_back({ends[0], ends[1]});
   return true;
 }
@@ -117,14 +123,15 @@ bool HiddenPair::add_cut(const Polygon& cell, const Polygon& target, const Plane
 HiddenPair::Cast HiddenPair::cast(const Polygon& cell, const Ends& ends, const Occluder& occluder) {
   edges_.clear();
   cuts_.clear();
+  const double depth = touching_depth(*ends.inner);
   if (!occluder.body()) {
     const OccluderFace& face = set_.faces[occluder.begin];
     const double height = side(span_along(cell, face.plane));
     if (std::abs(height) <= side_tolerance) return Cast::misses;
     const Plane seen = height > 0 ? face.plane : face.plane.flipped();
     const Span span = span_along(ends.target, seen);
-    if (span.low >= -side_tolerance) return Cast::misses;
-    if (span.high > side_tolerance) add_cut(cell, ends.target, seen);
+    if (span.low >= -depth) return Cast::misses;
+    if (span.high > depth) add_cut(cell, ends.target, seen);
     for (int k = 0; k < face.outline.count; ++k) {
       if (height > 0) {
         edges_.push_back({face.outline[k], face.outline.next(k)});
@@ -140,8 +147,8 @@ HiddenPair::Cast HiddenPair::cast(const Polygon& cell, const Ends& ends, const O
       if (height <= side_tolerance) continue;
       front |= 1u << k;
       const Span span = span_along(ends.target, plane);
-      if (span.low >= -side_tolerance) return Cast::misses;
-      if (span.high > side_tolerance) add_cut(cell, ends.target, plane);
+      if (span.low >= -depth) return Cast::misses;
+      if (span.high > depth) add_cut(cell, ends.target, plane);
     }
     if (front == 0) return Cast::misses;
     for (const BodyEdge& edge : occluder.edges) {
@@ -195,6 +202,12 @@ HiddenPair::Cast HiddenPair::cast_all(const Polygon& cell, const Ends& ends,
   return Cast::shadow;
 }
 
+bool HiddenPair::covered(const Polygon& cell, const Ends& ends, const std::vector<Candidate>& candidates) {
+  const Cast cast = cast_all(cell, ends, candidates);
+  if (cast != Cast::shadow) return cast == Cast::everything;
+  return HiddenQuadrature(ends.target, ends.outer->plane.normal, shadows_, workspace_).cover(cell);
+}
+
 HiddenPart HiddenPair::operator()(int s, int t, const std::vector<Candidate>& candidates, double unhidden,
                                   double tolerance) {
   const Ends pair = ends(s, t, candidates);
@@ -204,7 +217,7 @@ HiddenPart HiddenPair::operator()(int s, int t, const std::vector<Candidate>& ca
   const double whole = area(pair.cell, normal);
   if (!(whole > sliver_share * pair.outer->area)) return part;
   const std::vector<Polygon> cells = cells_by_side(pair, candidates);
-  std::size_t dark = 0, covered = 0;
+  std::size_t dark = 0;
   for (const Polygon& cell : cells) {
     const double share = area(cell, normal) / whole;
     if (!(share > sliver_share)) {
@@ -226,21 +239,24 @@ HiddenPart HiddenPair::operator()(int s, int t, const std::vector<Candidate>& ca
     const double allowed = tolerance * std::sqrt(share);
     HiddenIntegral integral;
     if (tolerance > cut_first * unhidden) {
-      integral = quadrature.adaptive(std::span(&cell, 1), area(cell, normal), allowed);
+      integral = quadrature.kinked(std::span(&cell, 1), area(cell, normal), allowed);
     } else {
       const std::vector<Polygon> smooth =
           cut_by_events(cell, normal, pair.target, shadows_, pair.outer->edge, most_cells);
       integral = shadows_.count() == 1
                      ? quadrature.smooth(smooth, unhidden * share, area(cell, normal), allowed)
-                     : quadrature.adaptive(smooth, area(cell, normal), allowed);
+                     : quadrature.cut(smooth, area(cell, normal), allowed);
     }
-    // several occluders may hide together what none hides alone
-    if (integral.value > nearly_all * unhidden * share && quadrature.cover(cell)) ++covered;
     part.value += integral.value;
     part.error += integral.error;
   }
-  const bool rest_is_error = unhidden - part.value <= 4 * tolerance + part.error;
-  part.all = dark == cells.size() || (dark + covered == cells.size() && rest_is_error);
+  part.all = dark == cells.size();
+  // several occluders may hide together what none hides alone: what is left then is the integral's error
+  if (!part.all && unhidden - part.value <= 4 * tolerance + part.error) {
+    part.all = std::all_of(cells.begin(), cells.end(), [&](const Polygon& cell) {
+      return !(area(cell, normal) > sliver_share * whole) || covered(cell, pair, candidates);
+    });
+  }
   if (part.all) part.value = unhidden;
   part.value = std::clamp(part.value, 0.0, unhidden);
   return part;

@@ -45,6 +45,8 @@ class HiddenPair {
   std::vector<Polygon> cells_by_side(const Ends& ends, const std::vector<Candidate>& candidates) const;
   Cast cast_all(const Polygon& cell, const Ends& ends, const std::vector<Candidate>& candidates);
   Cast cast(const Polygon& cell, const Ends& ends, const Occluder& occluder);
+  // Whether nothing of the target is in sight from any point of a rule over the cell.
+  bool covered(const Polygon& cell, const Ends& ends, const std::vector<Candidate>& candidates);
   bool add_cut(const Polygon& cell, const Polygon& target, const Plane& behind);
 
   const PatchMesh& mesh_;

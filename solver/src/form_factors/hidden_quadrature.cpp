@@ -24,6 +24,10 @@ constexpr int deepest = 12;
 
 constexpr int highest_order = 4;
 
+// Cells may err by the square root of their share of the tolerance, as if their errors had either sign. Where
+// their sum shows that they do not, all is done again with less for each, at most so often.
+constexpr int attempts = 3;
+
 // What a sum of arcs around a hidden polygon loses to rounding, and a patch to the gap between welded faces.
 constexpr double covered_rounding = 1e-9;
 
@@ -138,12 +142,28 @@ HiddenIntegral HiddenQuadrature::smooth(std::span<const Polygon> cells, double u
   return sum;
 }
 
-HiddenIntegral HiddenQuadrature::adaptive(std::span<const Polygon> cells, double whole, double tolerance) {
+HiddenIntegral HiddenQuadrature::kinked(std::span<const Polygon> cells, double whole, double tolerance) {
+  return halved_to(cells, whole, tolerance, add_equal_rules);
+}
+
+HiddenIntegral HiddenQuadrature::cut(std::span<const Polygon> cells, double whole, double tolerance) {
+  double each = tolerance;
+  HiddenIntegral sum = halved_to(cells, whole, each, add_nested_rules);
+  for (int attempt = 1; attempt < attempts && sum.error > tolerance; ++attempt) {
+    each *= 0.5 * tolerance / sum.error;
+    sum = halved_to(cells, whole, each, add_nested_rules);
+  }
+  return sum;
+}
+
+HiddenIntegral HiddenQuadrature::halved_to(std::span<const Polygon> cells, double whole, double tolerance,
+                                           RulePair (*add_rules)(const Polygon&, OuterPoints&)) {
   struct Part {
     Polygon cell;
     int depth;
   };
   std::vector<Part> parts, next;
+  std::vector<RulePair> rules;
   auto put = [](std::vector<Part>& into, const Polygon& cell, int depth) {
     for (const Polygon& part : triangles_and_quads(cell)) into.push_back({part, depth});
   };
@@ -152,29 +172,30 @@ HiddenIntegral HiddenQuadrature::adaptive(std::span<const Polygon> cells, double
   HiddenIntegral sum;
   while (!parts.empty()) {
     points_.clear();
-    for (const Part& part : parts) {
-      add_rule_pair(part.cell, points_);
-    }
+    rules.clear();
+    for (const Part& part : parts) rules.push_back(add_rules(part.cell, points_));
     hidden_shares(points_, normal_, inner_, shadows_, workspace_, shares_);
     sum.points += static_cast<std::int64_t>(points_.size());
     next.clear();
     std::size_t at = 0;
-    for (const Part& part : parts) {
-      const std::size_t half = part.cell.count == 4 ? 4 : 3;
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+      const Part& part = parts[p];
+      const RulePair& rule = rules[p];
       double first = 0, second = 0, size = 0;
-      for (std::size_t k = 0; k < half; ++k) {
-        first += points_.weight[at + k] * shares_[at + k];
-        second += points_.weight[at + half + k] * shares_[at + half + k];
-        size += points_.weight[at + k];
+      for (std::size_t k = 0; k < rule.first; ++k, ++at) {
+        first += points_.weight[at] * shares_[at];
+        size += points_.weight[at];
       }
-      at += 2 * half;
-      const double error = 0.5 * std::abs(first - second), allowed = tolerance * std::sqrt(size / whole);
+      for (std::size_t k = 0; k < rule.second; ++k, ++at) second += points_.weight[at] * shares_[at];
+      const double value = rule.trust * first + (1 - rule.trust) * second;
+      const double error = rule.trust * std::abs(first - second);
+      const double allowed = tolerance * std::sqrt(size / whole);
       if (error > allowed && part.depth < deepest) {
         const HalvedCells smaller = halve(part.cell, centroid(part.cell));
         put(next, smaller.first, part.depth + 1);
         put(next, smaller.second, part.depth + 1);
       } else {
-        sum.value += 0.5 * (first + second);
+        sum.value += value;
         sum.error += error;
       }
     }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "form_factors/hidden_kernel.h"
+#include "form_factors/hidden_rules.h"
 #include "form_factors/polygon.h"
 
 namespace luxel {
@@ -33,12 +34,21 @@ class HiddenQuadrature {
   HiddenIntegral smooth(std::span<const Polygon> cells, double unhidden, double area, double tolerance);
 
   /// Over cells that may hold kinks: two rules of equal degree side by side, halved where they disagree.
-  HiddenIntegral adaptive(std::span<const Polygon> cells, double area, double tolerance);
+  /// Cheap, and good to some thousandths.
+  HiddenIntegral kinked(std::span<const Polygon> cells, double area, double tolerance);
+
+  /// Over cells that were cut along the kinks that are straight, but for those where several occluders
+  /// overlap: a rule of higher degree, halved where one of lower degree disagrees, and again until the sum of
+  /// their differences is within the tolerance.
+  HiddenIntegral cut(std::span<const Polygon> cells, double area, double tolerance);
 
   /// Whether the shadows hide the inner polygon as a whole from every point of a rule over the cell.
   bool cover(const Polygon& cell);
 
  private:
+  // Halves cells until each errs by its share of the tolerance; the sum may err by more.
+  HiddenIntegral halved_to(std::span<const Polygon> cells, double area, double tolerance,
+                           RulePair (*add_rules)(const Polygon&, OuterPoints&));
   double distance_to_edges(const Vec3& point) const;
   void place(const Polygon& cell, double unhidden, double area, double tolerance, int depth);
 

@@ -145,14 +145,21 @@ void add_points(const Polygon& cell, int order, OuterPoints& points) {
       [&](const std::array<Vec3, 4>& q) { add_quad(q, order, points); });
 }
 
-void add_rule_pair(const Polygon& c, OuterPoints& points) {
+RulePair add_equal_rules(const Polygon& c, OuterPoints& points) {
   if (c.count == 4) {
     const QuadMap map({c[0], c[1], c[2], c[3]});
     for (const Node& node : quad_rules) map.add(node.u, node.v, node.weight, points);
-  } else {
-    add_triangle(c[0], c[1], c[2], triangle_2, points);
-    add_triangle(c[0], c[1], c[2], triangle_middles, points);
+    return {4, 4, 0.5};
   }
+  add_triangle(c[0], c[1], c[2], triangle_2, points);
+  add_triangle(c[0], c[1], c[2], triangle_middles, points);
+  return {3, 3, 0.5};
+}
+
+RulePair add_nested_rules(const Polygon& c, OuterPoints& points) {
+  add_points(c, 3, points);
+  add_points(c, 2, points);
+  return c.count == 4 ? RulePair{9, 4, 1} : RulePair{6, 3, 1};
 }
 
 std::vector<Polygon> triangles_and_quads(const Polygon& cell) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "form_factors/hidden_kernel.h"
@@ -12,10 +13,17 @@ namespace luxel {
 /// moved by 1e-9 of their cell, so that none lies on an axis of symmetry.
 void add_points(const Polygon& cell, int order, OuterPoints& points);
 
-/// Two rules side by side on a triangle (two of three points, degree 2) or a quad (two of four points, degree
-/// 3): the first half of the points added is the one, the second half the other; their difference tells how
-/// far the integrand is from smooth.
-void add_rule_pair(const Polygon& triangle_or_quad, OuterPoints& points);
+/// Two rules on one cell, one after the other; their difference tells how far the integrand is from smooth.
+struct RulePair {
+  std::size_t first = 0, second = 0;  ///< points of each
+  double trust = 0;                   ///< weight of the first in the value; the other's is what remains
+};
+
+/// Two rules of equal degree on a triangle (of three points each, degree 2) or a quad (four, degree 3).
+RulePair add_equal_rules(const Polygon& triangle_or_quad, OuterPoints& points);
+
+/// Those of order 3 and 2 of add_points(): the value is the first's, the difference bounds its error.
+RulePair add_nested_rules(const Polygon& triangle_or_quad, OuterPoints& points);
 
 /// The triangles and quads of a fan around the first corner.
 std::vector<Polygon> triangles_and_quads(const Polygon& cell);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "form_factors/assembly.h"
+#include "form_factors/group_exchange.h"
 #include "form_factors/hidden_pair.h"
 #include "form_factors/occluder_set.h"
 #include "form_factors/ray_visibility.h"
@@ -27,6 +28,11 @@ constexpr double pair_share = 0.3;
 // Rays err independently, clipping does not: their share is larger, such that the largest of 10,000 rows
 // (four standard deviations) stays below 2 A.
 constexpr double ray_share = 0.7;
+
+// Where factors between groups are asked for, the pairs of two groups share what their factor may be off: the
+// pair errors e_ij = A sqrt(G_ij G_IJ) times this add up to A G_IJ times this. Clipping's estimates are
+// bounds, those of rays standard errors. Factors below least_factor may err by as much as that one.
+constexpr double group_share = 0.5, group_ray_share = 0.3, least_factor = 1e-3;
 
 // Up to so many occluders between a pair, clipping is always the cheaper way.
 constexpr std::size_t few_occluders = 6;
@@ -82,6 +88,7 @@ class VisibilityPass {
     for (std::size_t k = 0; k < tree.clusters.size(); ++k) {
       if (tree.clusters[k].leaf()) leaf_[tree.clusters[k].begin] = static_cast<int>(k);
     }
+    if (options.group_accuracy) groups_ = GroupExchange(mesh, tree, exchange_areas, least_factor);
     if (options.visibility != Visibility::exact) rays_.emplace(tree, set, options.seed);
   }
 
@@ -218,9 +225,21 @@ class VisibilityPass {
   double unhidden(int s, int t) const {
     return exchange_(tree_.patches[s].patch, tree_.patches[t].patch) * tree_.scale * tree_.scale;
   }
-  double tolerance(int s, int t, double exchange) const {
+
+  // What the visible part of a pair may be off, by clipping and by rays; working units.
+  struct Allowed {
+    double clip, rays;
+  };
+  Allowed allowed(int s, int t, double exchange) const {
     const double smaller = std::min(tree_.patches[s].area, tree_.patches[t].area);
-    return pair_share * options_.accuracy * std::sqrt(exchange * smaller);
+    const double in_row = options_.accuracy * std::sqrt(exchange * smaller);
+    Allowed allowed{pair_share * in_row, ray_share * in_row};
+    if (!groups_.empty()) {
+      const double in_group = options_.accuracy * std::sqrt(exchange * groups_.at(s, t));
+      allowed.clip = std::min(allowed.clip, group_share * in_group);
+      allowed.rays = std::min(allowed.rays, group_ray_share * in_group);
+    }
+    return allowed;
   }
 
   // A pair of a block in which rays decide, if they reach the accuracy.
@@ -228,8 +247,7 @@ class VisibilityPass {
                       BlockWork& work) {
     const double exchange = unhidden(s, t);
     if (!(exchange > 0)) return;
-    const double allowed = tolerance(s, t, exchange);
-    const double for_rays = allowed * (ray_share / pair_share);
+    const double for_rays = allowed(s, t, exchange).rays;
     if (options_.visibility == Visibility::rays || for_rays > coarse * exchange) {
       ++work.tally.partial;
       work.rays.push_back({s, t, exchange, for_rays});
@@ -254,15 +272,14 @@ class VisibilityPass {
     const double exchange = unhidden(s, t);
     if (!(exchange > 0)) return;
     ++work.tally.partial;
-    const double allowed = tolerance(s, t, exchange);
-    const double for_rays = allowed * (ray_share / pair_share);
+    const auto [for_clip, for_rays] = allowed(s, t, exchange);
     if (options_.visibility == Visibility::rays ||
         (options_.visibility == Visibility::automatic &&
          rays_are_cheaper(candidates.size(), for_rays / exchange))) {
       work.rays.push_back({s, t, exchange, for_rays});
       return;
     }
-    const HiddenPart part = clip(s, t, candidates, exchange, allowed);
+    const HiddenPart part = clip(s, t, candidates, exchange, for_clip);
     ++work.tally.exact;
     if (part.value > 0 || part.all) store(s, t, part.all ? 0 : exchange - part.value, part.error, work.tally);
   }
@@ -278,6 +295,7 @@ class VisibilityPass {
   const OccluderSet& set_;
   const FormFactorOptions& options_;
   ExchangeMatrix& exchange_;
+  GroupExchange groups_;
   std::vector<ShaftEnd> ends_;
   std::vector<int> leaf_;  // of each patch its cluster
   std::optional<RayVisibility> rays_;
