@@ -99,6 +99,7 @@ struct Report {
 
   /// What solving the scene will take, foretold.
   struct Estimate {
+    std::string kind;  ///< of the operator that would be chosen
     double cpu_seconds = 0;
     std::uint64_t bytes = 0;  ///< at the peak, the program itself included
   };

@@ -150,7 +150,8 @@ std::string to_json(const Report& report) {
   }
   if (report.partial) document["partial"] = true;
   if (report.estimate) {
-    document["estimate"] = {{"cpu_seconds", number(report.estimate->cpu_seconds)},
+    document["estimate"] = {{"operator", report.estimate->kind},
+                            {"cpu_seconds", number(report.estimate->cpu_seconds)},
                             {"bytes", report.estimate->bytes}};
   }
   document["cpu_seconds"] = number(report.cpu_seconds);

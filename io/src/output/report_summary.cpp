@@ -126,8 +126,8 @@ std::string summary(const Report& report) {
                item.what + ": " + item.why + (item.saved.empty() ? "" : " (saved " + item.saved + ")"));
   }
   if (report.estimate) {
-    table.line("to solve", "about " + number(report.estimate->cpu_seconds, "%.2g") + " CPU s, " +
-                               bytes(report.estimate->bytes));
+    table.line("to solve", report.estimate->kind + ", about " + number(report.estimate->cpu_seconds, "%.2g") +
+                               " CPU s, " + bytes(report.estimate->bytes));
   }
   table.line("run", seconds(report.wall_seconds, report.cpu_seconds) + ", " +
                         count(report.run.threads, "thread") + ", peak memory " + bytes(report.peak_bytes));

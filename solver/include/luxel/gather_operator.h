@@ -47,7 +47,7 @@ GatherPlan gather_plan(const PatchMesh& mesh, const PatchField& emission, const 
 
 /// F by quasi-random rays: row i holds the shares of patch i's rays that met each patch. Rows are exactly 1
 /// where no ray is lost (always in closed enclosures); a ray that escapes or meets a back brings nothing. Not
-/// symmetric: reciprocity holds within the sampling error. Error of F X: about 0.45 rays^-0.67 of a smooth
+/// symmetric: reciprocity holds within the sampling error. Error of F X: about 0.5 rays^-0.67 of a smooth
 /// X's variation; see docs/decisions/0010-gather.md.
 class GatherOperator : public TransportOperator {
  public:

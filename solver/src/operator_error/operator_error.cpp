@@ -131,10 +131,13 @@ void set_interval(double square, const std::vector<double>& without, OperatorErr
 // Looks at each of a stratum's patches: two, and as many rays again for lamps.
 constexpr double rays_a_stratum = 2.0 * batches * 2;
 
+// As the accuracy calls for, if the least strata can have so many; more where all strata can.
 int rays_of_looks(const OperatorErrorOptions& options) {
   const double wanted = std::pow(noise_at_one / options.accuracy, 1 / noise_order);
   const double affordable = options.most_rays / (rays_a_stratum * least_strata);
-  return static_cast<int>(std::clamp<double>(std::min(wanted, affordable), least_rays, most_rays));
+  const double left = options.most_rays / (rays_a_stratum * most_strata);
+  return static_cast<int>(
+      std::clamp<double>(std::max(std::min(wanted, affordable), left), least_rays, most_rays));
 }
 
 void require(bool holds, const char* message) {
