@@ -91,6 +91,29 @@ class Study:
             points.write(f"{name.replace(' ', '_')} {reports[0]['patches']} {operator} {cpu[len(cpu) // 2]} {error}\n")
 
 
+def plot(folder):
+    """Error against CPU time of all points measured so far: scale.png."""
+    curves = {}
+    for line in (folder / "points.txt").read_text().splitlines():
+        name, patches, operator, cpu, error = line.split()
+        if ".csv" in name or float(error) == 0:
+            continue
+        curves.setdefault((name.replace("_", " "), int(patches), operator), []).append((float(cpu), float(error)))
+    script = ["set terminal pngcairo size 1000,620 font 'sans,11'", f"set output '{folder / 'scale.png'}'",
+              "set logscale xy", "set grid", "set key below maxcols 2",
+              "set xlabel 'CPU seconds of the whole run, error bar included'",
+              "set ylabel 'relative RMS error of irradiance'", "set format y '10^{%L}'"]
+    styles = {"dense": 7, "gather": 5, "hierarchical": 9}
+    parts = []
+    for (name, patches, operator), points in sorted(curves.items(), key=lambda item: item[0][1]):
+        key = f"{name}, {patches:,}: {operator}"
+        parts.append(f"'-' with linespoints pointtype {styles[operator]} title '{key}'")
+    script.append("plot " + ", ".join(parts))
+    for points in (points for _, points in sorted(curves.items(), key=lambda item: item[0][1])):
+        script += [f"{x} {y}" for x, y in sorted(points)] + ["e"]
+    subprocess.run(["gnuplot"], input="\n".join(script), text=True, check=True)
+
+
 def main():
     if len(sys.argv) < 4:
         sys.exit(__doc__)
@@ -123,6 +146,7 @@ def main():
             "surfaces": {"lamp": {"reflectance": 0.3, "exitance": [30, 27, 24]}}})
         for accuracy in (0.02, 0.012):
             study.line("rough ball", ball, ["--as-is"], "gather", accuracy)
+    plot(study.folder)
 
 
 if __name__ == "__main__":
