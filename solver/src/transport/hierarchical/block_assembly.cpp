@@ -30,7 +30,7 @@ constexpr double interpolation_error = 0.5;
 constexpr double touching_ratio = 0.8;
 constexpr double touching_error = 0.25;
 
-// Nearer single patches get an exact kernel.
+// Nearer single patches, and those that straddle, get an exact kernel.
 constexpr double near_ratio = 0.5;
 
 // An end partly behind the other's horizon: the kernel has a kink.
@@ -61,7 +61,7 @@ constexpr int first_rays = 16;
 constexpr int most_rays = 256;
 
 // Rays that must agree where an occluder is near.
-constexpr int agreeing_rays = 64;
+constexpr int agreeing_rays = 256;
 
 // A side is taken for constant where that changes the irradiance by less than this share of the block's
 // error.
@@ -98,6 +98,17 @@ double distance(const OccluderFace& face, const Vec3& x) {
   return std::sqrt(height * height + aside);
 }
 
+// Of what the kernel would let through.
+double visible_share(const BlockKernel& kernel, const RayCount& rays) {
+  if (rays.unanimous()) return rays.share();
+  double all = 0, visible = 0;
+  for (int k = 0; k < 16; ++k) {
+    all += kernel.values[k];
+    visible += kernel.values[k] * rays.share(k);
+  }
+  return all > 0 ? visible / all : rays.share();
+}
+
 class Assembly {
  public:
   Assembly(const PatchHierarchy& hierarchy, const HidingScene& scene, const Brightness& brightness,
@@ -128,6 +139,7 @@ class Assembly {
           for (std::size_t k = range.begin(); k < range.end(); ++k) {
             if (stage.cancelled()) return;
             run(tasks[k], lists[k + 1], nullptr);
+            lists[k + 1].shrink();
             stage.add(1);
           }
         },
@@ -280,7 +292,7 @@ class Assembly {
       }
       rays_.cast(r, s, first_rays, rays);
       if (single) {
-        while (rays.error() > allowed && rays.all < most_rays) rays_.cast(r, s, 2 * rays.all, rays);
+        while (rays.error() > allowed && rays.drawn < most_rays) rays_.cast(r, s, 2 * rays.drawn, rays);
       } else if ((rays.unanimous() ? agreed_error : mixed_error) > allowed) {
         list.rays += rays.all;
         divide(r, s, candidates, list, deferred);
@@ -291,19 +303,21 @@ class Assembly {
       const bool near_s = counts && occluder_near(s, candidates);
       // a few rays that agree are no proof where much is half hidden all around
       if (near_r || near_s) {
-        while (rays.unanimous() && rays.all < agreeing_rays) rays_.cast(r, s, rays.all + first_rays, rays);
+        while (rays.unanimous() && rays.drawn < agreeing_rays) {
+          rays_.cast(r, s, rays.drawn + first_rays, rays);
+        }
       }
       list.rays += rays.all;
       if (!rays.unanimous() && divide_one(r, s, near_r, near_s, candidates, list, deferred)) return;
-      if (rays.visible == 0) {
+      if (rays.all > 0 && rays.visible == 0) {
         ++list.hidden;
         return;
       }
     } else {
       ++list.unhidden;
     }
-    if (single && ratio > near_ratio) {
-      store_near(r, s, rays.share(),
+    if (single && (ratio > near_ratio || straddling_r || straddling_s)) {
+      store_near(r, s, visible_share(kernel, rays),
                  std::min(near_share * options_.block_error / std::max(bright_r, bright_s), near_share),
                  list);
     } else {

@@ -32,6 +32,12 @@ struct BlockList {
   std::int64_t hidden = 0;
   std::int64_t rays = 0;
 
+  /// Gives back memory that it has not used.
+  void shrink() {
+    scalars.shrink_to_fit();
+    linears.shrink_to_fit();
+    bilinears.shrink_to_fit();
+  }
   std::size_t size() const { return scalars.size() + linears.size() + bilinears.size(); }
 };
 

@@ -18,20 +18,31 @@ constexpr std::size_t most_parts = 8;
 // Doubles of a node: light or irradiance at four nodes, and what is equal at all of them.
 constexpr int values_a_node = 5;
 
-template <class Block>
-void gather(std::vector<BlockList>& lists, std::vector<Block> BlockList::*blocks,
-            const std::vector<int>& number, std::vector<Block>& all) {
-  std::size_t size = 0;
-  for (const BlockList& list : lists) size += (list.*blocks).size();
-  all.reserve(size);
-  for (BlockList& list : lists) {
-    for (Block block : list.*blocks) {
-      block.r = number[block.r];
-      block.s = number[block.s];
-      all.push_back(block);
-    }
-    list.*blocks = {};
+template <class Blocks>
+void renumber(Blocks& blocks, const std::vector<int>& number) {
+  for (auto& block : blocks) {
+    block.r = number[block.r];
+    block.s = number[block.s];
   }
+}
+
+// Bytes to be read in one application.
+std::size_t bytes_of(const BlockList& list) {
+  return list.scalars.size() * sizeof(ScalarBlock) + list.linears.size() * sizeof(LinearBlock) +
+         list.bilinears.size() * sizeof(BilinearBlock);
+}
+
+// Begins of runs of lists of about equal bytes, and the end.
+std::vector<std::size_t> runs_of(const std::vector<BlockList>& lists, std::size_t count) {
+  std::size_t total = 0, done = 0;
+  for (const BlockList& list : lists) total += bytes_of(list);
+  std::vector<std::size_t> runs{0};
+  for (std::size_t k = 0; k < lists.size(); ++k) {
+    done += bytes_of(lists[k]);
+    if (runs.size() < count && done * count >= total * runs.size()) runs.push_back(k + 1);
+  }
+  runs.push_back(lists.size());
+  return runs;
 }
 
 template <class Body>
@@ -51,20 +62,24 @@ void for_nodes(int begin, int end, const Body& body) {
 }  // namespace
 
 BlockProduct::BlockProduct(ActiveTree tree, std::vector<BlockList> lists, std::vector<double> areas)
-    : tree_(std::move(tree)), areas_(std::move(areas)) {
-  gather(lists, &BlockList::scalars, tree_.number, scalars_);
-  gather(lists, &BlockList::linears, tree_.number, linears_);
-  gather(lists, &BlockList::bilinears, tree_.number, bilinears_);
+    : tree_(std::move(tree)), lists_(std::move(lists)), areas_(std::move(areas)) {
+  std::size_t blocks = 0;
+  for (BlockList& list : lists_) {
+    blocks += list.size();
+    renumber(list.scalars, tree_.number);
+    renumber(list.linears, tree_.number);
+    renumber(list.bilinears, tree_.number);
+  }
   tree_.number = {};
-  const std::size_t blocks = scalars_.size() + linears_.size() + bilinears_.size();
-  parts_ = static_cast<int>(
-      std::clamp<std::size_t>(2 * blocks / std::max<std::size_t>(tree_.nodes.size(), 1), 2, most_parts));
+  const std::size_t nodes = std::max<std::size_t>(tree_.nodes.size(), 1);
+  parts_ = runs_of(lists_, std::clamp<std::size_t>(2 * blocks / nodes, 2, most_parts));
 }
 
 std::size_t BlockProduct::bytes() const {
-  return scalars_.size() * sizeof(ScalarBlock) + linears_.size() * sizeof(LinearBlock) +
-         bilinears_.size() * sizeof(BilinearBlock) +
-         tree_.nodes.size() * (sizeof(ActiveNode) + 16 * sizeof(float)) + areas_.size() * sizeof(double);
+  std::size_t bytes =
+      tree_.nodes.size() * (sizeof(ActiveNode) + 16 * sizeof(float)) + areas_.size() * sizeof(double);
+  for (const BlockList& list : lists_) bytes += sizeof(BlockList) + bytes_of(list);
+  return bytes;
 }
 
 void BlockProduct::apply(const double* x, double* y, int columns) const {
@@ -120,16 +135,17 @@ void BlockProduct::apply_columns(const double* x, double* y, int stride) const {
     });
   }
 
-  std::vector<std::vector<double>> sums(parts_);
-  tbb::parallel_for(0, parts_, [&](int part) {
+  std::vector<std::vector<double>> sums(parts_.size() - 1);
+  tbb::parallel_for(std::size_t{0}, sums.size(), [&](std::size_t part) {
     sums[part].assign(total, 0.0);
     double* const h = sums[part].data();
     const auto at = [&](int n) { return h + static_cast<std::size_t>(n) * size; };
-    const auto of_part = [&](const auto& blocks, const auto& body) {
-      const std::size_t begin = blocks.size() * part / parts_, end = blocks.size() * (part + 1) / parts_;
-      for (std::size_t k = begin; k < end; ++k) body(blocks[k]);
+    const auto of_part = [&](const auto blocks, const auto& body) {
+      for (std::size_t k = parts_[part]; k < parts_[part + 1]; ++k) {
+        for (const auto& block : lists_[k].*blocks) body(block);
+      }
     };
-    of_part(scalars_, [&](const ScalarBlock& block) {
+    of_part(&BlockList::scalars, [&](const ScalarBlock& block) {
       double *hr = at(block.r) + common, *hs = at(block.s) + common;
       const double *qr = lit(block.r) + common, *qs = lit(block.s) + common, value = block.value;
       for (int c = 0; c < columns; ++c) {
@@ -137,7 +153,7 @@ void BlockProduct::apply_columns(const double* x, double* y, int stride) const {
         hs[c] += value * qr[c];
       }
     });
-    of_part(linears_, [&](const LinearBlock& block) {
+    of_part(&BlockList::linears, [&](const LinearBlock& block) {
       double *hr = at(block.r), *hs = at(block.s) + common;
       const double *qr = lit(block.r), *qs = lit(block.s) + common;
       for (int a = 0; a < 4; ++a) {
@@ -148,7 +164,7 @@ void BlockProduct::apply_columns(const double* x, double* y, int stride) const {
         }
       }
     });
-    of_part(bilinears_, [&](const BilinearBlock& block) {
+    of_part(&BlockList::bilinears, [&](const BilinearBlock& block) {
       double *hr = at(block.r), *hs = at(block.s);
       const double *qr = lit(block.r), *qs = lit(block.s);
       for (int a = 0; a < 4; ++a) {
@@ -168,7 +184,7 @@ void BlockProduct::apply_columns(const double* x, double* y, int stride) const {
     for_nodes(tree_.levels[level], tree_.levels[level + 1], [&](int n) {
       const ActiveNode& node = tree_.nodes[n];
       double* h = irradiance.data() + static_cast<std::size_t>(n) * size;
-      for (int part = 1; part < parts_; ++part) {
+      for (std::size_t part = 1; part < sums.size(); ++part) {
         const double* more = sums[part].data() + static_cast<std::size_t>(n) * size;
         for (int k = 0; k < size; ++k) h[k] += more[k];
       }

@@ -13,7 +13,7 @@ namespace luxel {
 /// exchanged between the ends of the blocks, and interpolated down. Immutable and safe from many threads.
 class BlockProduct {
  public:
-  /// Takes the lists, whose ends are numbers of the hierarchy, and empties them.
+  /// Takes the lists, whose ends are numbers of the hierarchy.
   /// @param areas  of the unknowns, working units
   BlockProduct(ActiveTree tree, std::vector<BlockList> lists, std::vector<double> areas);
 
@@ -31,11 +31,9 @@ class BlockProduct {
   void apply_columns(const double* x, double* y, int stride) const;
 
   ActiveTree tree_;
-  std::vector<ScalarBlock> scalars_;
-  std::vector<LinearBlock> linears_;
-  std::vector<BilinearBlock> bilinears_;
+  std::vector<BlockList> lists_;    // ends are numbers of the tree's nodes
+  std::vector<std::size_t> parts_;  // begins of runs of lists, and the end: each run has sums of its own
   std::vector<double> areas_;
-  int parts_ = 1;  // of the blocks, each with sums of its own
 };
 
 }  // namespace luxel

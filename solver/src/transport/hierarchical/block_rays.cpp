@@ -49,16 +49,19 @@ double RayCount::error() const {
 }
 
 BlockRays::Point BlockRays::point(const BlockEnd& end, int node, double u, double v) const {
+  const auto nearest_node = [&](const Vec3& x) {
+    return (end.axes.u.dot(x - end.axes.middle) > 0 ? 1 : 0) +
+           (end.axes.v.dot(x - end.axes.middle) > 0 ? 2 : 0);
+  };
   if (end.single) {
     const Vec3 at = point_on(end.bounds.hull, 0.5 * ((node & 1) + u), 0.5 * ((node >> 1) + v));
-    return {at + surface_offset * end.bounds.plane.normal, node};
+    return {at, end.bounds.plane.normal, nearest_node(at)};
   }
   if (end.bounds.planar) {
     // the rectangle of equal moments, which is the cluster itself where it is one
     const double s = (node & 1 ? u : -u) * std::numbers::sqrt3 * end.axes.spread_s;
     const double t = (node & 2 ? v : -v) * std::numbers::sqrt3 * end.axes.spread_t;
-    return {end.axes.middle + s * end.axes.u + t * end.axes.v + surface_offset * end.bounds.plane.normal,
-            node};
+    return {end.axes.middle + s * end.axes.u + t * end.axes.v, end.bounds.plane.normal, node};
   }
   // a patch of the node's quarter of the order, which follows position
   const PatchCluster& cluster = hierarchy_.clusters[end.cluster];
@@ -73,8 +76,7 @@ BlockRays::Point BlockRays::point(const BlockEnd& end, int node, double u, doubl
     outline.corners[k] = hierarchy_.frame(mesh.vertices[mesh.corners[patch][k]]);
   }
   const Vec3 x = point_on(outline, at - which, v);
-  const int s = end.axes.u.dot(x - end.axes.middle) > 0, t = end.axes.v.dot(x - end.axes.middle) > 0;
-  return {x + surface_offset * mesh.normals[patch], s + 2 * t};
+  return {x, mesh.normals[patch], nearest_node(x)};
 }
 
 void BlockRays::cast(const BlockEnd& r, const BlockEnd& s, int wanted, RayCount& count) const {
@@ -88,20 +90,22 @@ void BlockRays::cast(const BlockEnd& r, const BlockEnd& s, int wanted, RayCount&
   alignas(64) RTCRay16 rays;
   alignas(64) std::array<int, packet> valid;
   std::array<int, packet> pair;
-  while (count.all < wanted) {
+  for (; count.drawn < wanted; count.drawn += packet) {
     for (int k = 0; k < packet; ++k) {
       std::array<double, 4> u;
       for (std::size_t c = 0; c < u.size(); ++c) {
-        const double x = shift[c] + (count.all + k) * recurrence[c];
+        const double x = shift[c] + (count.drawn + k) * recurrence[c];
         u[c] = x - std::floor(x);
       }
       const Point from = point(r, k >> 2, u[0], u[1]), to = point(s, k & 3, u[2], u[3]);
-      const Vec3 along = to.at - from.at;
+      const Vec3 sight = to.at - from.at;
+      const Vec3 start = from.at + surface_offset * from.normal;
+      const Vec3 along = to.at + surface_offset * to.normal - start;
       pair[k] = 4 * from.node + to.node;
-      valid[k] = -1;
-      rays.org_x[k] = static_cast<float>(from.at.x());
-      rays.org_y[k] = static_cast<float>(from.at.y());
-      rays.org_z[k] = static_cast<float>(from.at.z());
+      valid[k] = sight.dot(from.normal) > 0 && sight.dot(to.normal) < 0 ? -1 : 0;
+      rays.org_x[k] = static_cast<float>(start.x());
+      rays.org_y[k] = static_cast<float>(start.y());
+      rays.org_z[k] = static_cast<float>(start.z());
       rays.dir_x[k] = static_cast<float>(along.x());
       rays.dir_y[k] = static_cast<float>(along.y());
       rays.dir_z[k] = static_cast<float>(along.z());
@@ -114,12 +118,13 @@ void BlockRays::cast(const BlockEnd& r, const BlockEnd& s, int wanted, RayCount&
     }
     rtcOccluded16(valid.data(), scene_, &context, &rays);
     for (int k = 0; k < packet; ++k) {
+      if (valid[k] == 0) continue;
       const bool arrived = !(rays.tfar[k] < 0);
       ++count.cast[pair[k]];
+      ++count.all;
       count.arrived[pair[k]] += arrived;
       count.visible += arrived;
     }
-    count.all += packet;
   }
 }
 

@@ -10,10 +10,11 @@ struct RTCSceneTy;
 namespace luxel {
 
 /// Rays between two ends and how many of them arrived, by the nodes in whose parts of the ends they begin and
-/// end: [4 a + b].
+/// end: [4 a + b]. Rays that run behind either end's surface carry no light and do not count.
 struct RayCount {
   std::array<int, 16> cast{}, arrived{};
-  int all = 0, visible = 0;
+  int drawn = 0;             ///< pairs of points
+  int all = 0, visible = 0;  ///< rays that count, and those that arrived
 
   bool unanimous() const { return visible == 0 || visible == all; }
   double share() const { return all > 0 ? static_cast<double>(visible) / all : 1; }
@@ -30,12 +31,12 @@ class BlockRays {
   BlockRays(const PatchHierarchy& hierarchy, RTCSceneTy* scene, std::uint64_t seed)
       : hierarchy_(hierarchy), scene_(scene), seed_(seed) {}
 
-  /// Adds rays up to `wanted` in all, a multiple of 16.
+  /// Draws rays up to `wanted` in all, a multiple of 16.
   void cast(const BlockEnd& r, const BlockEnd& s, int wanted, RayCount& count) const;
 
  private:
   struct Point {
-    Vec3 at;
+    Vec3 at, normal;
     int node;
   };
   Point point(const BlockEnd& end, int node, double u, double v) const;

@@ -49,47 +49,48 @@ ClusterAxes principal_axes(const PatchMesh& mesh, const WorkingFrame& frame, std
 
 }  // namespace
 
-PatchCluster curved_cluster(const PatchHierarchy& hierarchy, int begin, int end, CurvedCluster& curved) {
+PatchCluster curved_cluster(const PatchHierarchy& hierarchy, int begin, int end, int first_group,
+                            int last_group, CurvedCluster& curved) {
   const PatchMesh& mesh = *hierarchy.mesh;
   const WorkingFrame& frame = hierarchy.frame;
-  const std::span<const int> patches(hierarchy.order.data() + begin, end - begin);
   PatchCluster cluster;
   cluster.begin = begin;
   cluster.end = end;
-  double total = 0;  // [m2]
+  const std::span<const FlatGroup> groups(hierarchy.groups.data() + first_group, last_group - first_group);
   Vec3 normal = Vec3::Zero();
   curved.low = Vec3::Constant(infinity);
   curved.high = -curved.low;
-  for (int p : patches) {
-    total += mesh.areas[p];
-    normal += mesh.areas[p] * mesh.normals[p];
-    for (int k = 0; k < mesh.corner_count(p); ++k) {
-      const Vec3 x = frame(mesh.vertices[mesh.corners[p][k]]);
-      curved.low = curved.low.cwiseMin(x);
-      curved.high = curved.high.cwiseMax(x);
-    }
+  for (const FlatGroup& group : groups) {
+    cluster.area += group.area;
+    normal += group.area * group.normal;
+    curved.low = curved.low.cwiseMin(group.low);
+    curved.high = curved.high.cwiseMax(group.high);
   }
-  cluster.area = total * frame.scale * frame.scale;
   const double length = normal.norm();
-  curved.normal = length > 1e-9 * total ? Vec3(normal / length) : Vec3::UnitZ();
+  curved.normal = length > 1e-9 * cluster.area ? Vec3(normal / length) : Vec3::UnitZ();
   cluster.centre = 0.5 * (curved.low + curved.high);
+  cluster.radius = 0.5 * (curved.high - curved.low).norm();
   curved.cone_cosine = 1;
   curved.setback = {infinity, -infinity};
-  for (int p : patches) {
-    curved.cone_cosine = std::min(curved.cone_cosine, curved.normal.dot(mesh.normals[p]));
-    const double setback = mesh.normals[p].dot(cluster.centre - frame(mesh.centroids[p]));
+  for (const FlatGroup& group : groups) {
+    curved.cone_cosine = std::min(curved.cone_cosine, curved.normal.dot(group.normal));
+    const double setback = group.normal.dot(cluster.centre) - group.offset;
     curved.setback.low = std::min(curved.setback.low, setback);
     curved.setback.high = std::max(curved.setback.high, setback);
-    for (int k = 0; k < mesh.corner_count(p); ++k) {
-      const Vec3 x = frame(mesh.vertices[mesh.corners[p][k]]);
-      cluster.radius = std::max(cluster.radius, (x - cluster.centre).norm());
-    }
   }
   curved.cone_sine = std::sqrt(std::max(0.0, 1 - curved.cone_cosine * curved.cone_cosine));
-
   cluster.usable = curved.cone_cosine >= least_cone_cosine;
   if (!cluster.usable) return cluster;
 
+  const std::span<const int> patches(hierarchy.order.data() + begin, end - begin);
+  const double total = cluster.area / (frame.scale * frame.scale);  // [m2]
+  double radius = 0;
+  for (int p : patches) {
+    for (int k = 0; k < mesh.corner_count(p); ++k) {
+      radius = std::max(radius, (frame(mesh.vertices[mesh.corners[p][k]]) - cluster.centre).norm());
+    }
+  }
+  cluster.radius = radius;
   cluster.axes = principal_axes(mesh, frame, patches, curved.normal, total);
   cluster.weights.fill(0);
   curved.nodes.fill(Vec3::Zero());

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <tuple>
@@ -42,6 +43,8 @@ std::vector<int> group_numbers(const PatchMesh& mesh, const Enclosures& enclosur
 FlatGroup flat_group(const PatchMesh& mesh, const WorkingFrame& frame, const int* begin, const int* end) {
   FlatGroup group;
   Vec3 normal = Vec3::Zero();
+  group.low = Vec3::Constant(std::numeric_limits<double>::infinity());
+  group.high = -group.low;
   double height = 0, total = 0;
   int largest = *begin;
   for (const int* p = begin; p != end; ++p) {
@@ -52,6 +55,11 @@ FlatGroup flat_group(const PatchMesh& mesh, const WorkingFrame& frame, const int
   for (const int* p = begin; p != end; ++p) {
     height += mesh.areas[*p] * group.normal.dot(frame(mesh.centroids[*p]));
     total += mesh.areas[*p];
+    for (int k = 0; k < mesh.corner_count(*p); ++k) {
+      const Vec3 x = frame(mesh.vertices[mesh.corners[*p][k]]);
+      group.low = group.low.cwiseMin(x);
+      group.high = group.high.cwiseMax(x);
+    }
   }
   group.offset = height / total;
   group.area = total * frame.scale * frame.scale;

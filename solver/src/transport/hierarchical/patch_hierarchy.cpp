@@ -124,7 +124,7 @@ class Builder {
     const int id = static_cast<int>(result_.clusters.size());
     result_.clusters.emplace_back();
     CurvedCluster curved;
-    PatchCluster cluster = curved_cluster(result_, begins_[begin], begins_[end], curved);
+    PatchCluster cluster = curved_cluster(result_, begins_[begin], begins_[end], begin, end, curved);
     cluster.parent = parent;
     cluster.curved = static_cast<int>(result_.curved.size());
     result_.curved.push_back(curved);

@@ -59,6 +59,7 @@ struct FlatGroup {
   Vec3 u, v, normal;
   double offset = 0;
   double area = 0;  ///< working units
+  Vec3 low, high;   ///< box around the corners
   int finish = 0;
   int enclosure = 0;
   bool closed = false;  ///< its enclosure is
