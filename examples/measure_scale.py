@@ -118,7 +118,7 @@ def main():
     if len(sys.argv) < 4:
         sys.exit(__doc__)
     study = Study(sys.argv[1], sys.argv[2], pathlib.Path(sys.argv[3]), int(sys.argv[4]) if len(sys.argv) > 4 else 3)
-    parts = sys.argv[5:] or ["5k", "100k", "1M", "ball"]
+    parts = sys.argv[5:] or ["5k", "100k", "1M", "files", "ball"]
     print("| scene | patches | operator | accuracy asked | CPU s | peak GB | error bar | error against dense 1e-5 |")
     print("|---|---|---|---|---|---|---|---|")
     if "5k" in parts:
@@ -136,7 +136,7 @@ def main():
         for operator in ("gather", "hierarchical"):
             for accuracy in accuracies:
                 study.line("two blocks", blocks, ["--as-is"], operator, accuracy)
-    if "1M" in parts:
+    if "files" in parts:
         for accuracy in (0.008, 0.004):
             study.line("Cornell box, .csv", CORNELL, ["--patches", 1000000], "gather", accuracy, outputs=(".csv",))
         study.line("Cornell box, .csv, .vtp", CORNELL, ["--patches", 1000000], "gather", 0.008, outputs=(".csv", ".vtp"))
