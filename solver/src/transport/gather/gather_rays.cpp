@@ -13,6 +13,7 @@
 #include "sampling/sobol_words.h"
 #include "transport/gather/packets.h"
 #include "transport/gather/patch_frame.h"
+#include "transport/gather/sorted_rays.h"
 
 namespace luxel {
 
