@@ -1,5 +1,7 @@
 #include "operator_use.h"
 
+#include <fmt/format.h>
+
 #include "output_files.h"
 
 namespace luxel::app {
@@ -12,6 +14,10 @@ std::string operator_cannot(OperatorKind kind, const SolveCommand& command) {
   if (!transport.load.empty()) return only_dense("--load");
   if (transport.form_factors.visibility == Visibility::exact) return only_dense("--visibility exact");
   if (command.solve.bounces) return only_dense("--bounces");
+  const double accuracy = transport.form_factors.accuracy;
+  if (accuracy < finest_sampled) {
+    return fmt::format("--accuracy {}, expected {} or more; dense can do it", accuracy, finest_sampled);
+  }
   for (const std::string& file : command.outputs) {
     if (extension_of(file) == ".pvd") return only_dense("-o " + file);
   }

@@ -92,6 +92,8 @@ const std::vector<BadInput> command_lines = {
     option("ExactVisibilityOfAGather", {"--operator", "gather", "--visibility", "exact"},
            {"gather", "exact"}),
     option("SeriesOfAGather", {"--operator", "gather", "-o", "{}x.pvd"}, {"gather", "x.pvd"}),
+    option("GatherFinerThanItCan", {"--operator", "gather", "--accuracy", "1e-6"},
+           {"gather", "1e-06", "dense"}),
     option("ErrorBarOfNoKind", {"--error-bar", "maybe"}, {"--error-bar", "maybe"}),
     option("MemorySuffixUnknown", {"--memory", "3Q"}, {"--memory", "3Q"}),
     option("ThreadsZero", {"--threads", "0"}, {"--threads", "'0'"}),

@@ -182,6 +182,13 @@ TEST(ChooseOperator, TakesWhatFitsIntoTheMemory) {
   EXPECT_FALSE(choice.estimates.front().fits);
 }
 
+TEST(ChooseOperator, LeavesOutWhatCannotReachTheAccuracy) {
+  const OperatorChoice choice = choose_operator(lit_room(8), accurate_to(1e-6), 1e9);
+
+  EXPECT_EQ(choice.estimates.size(), 1u);
+  EXPECT_EQ(choice.kind, OperatorKind::dense);
+}
+
 TEST(OperatorNames, AreReadAsTheyAreWritten) {
   for (const auto kind :
        {OperatorKind::automatic, OperatorKind::dense, OperatorKind::gather, OperatorKind::hierarchical}) {

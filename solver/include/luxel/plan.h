@@ -145,6 +145,10 @@ Cost estimated_cost(const Plan& plan, const PatchMesh& mesh, const Enclosures& e
 /// program, the mesh, the fields and the rays that are kept.
 Cost estimated_gather_cost(const PatchMesh& mesh, const PlanOptions& options = {});
 
+/// The best accuracy that gather and hierarchical can be asked for: below it, what patches' edges are moved
+/// by in the one, and the blocks' rules in the other, would count.
+inline constexpr double finest_sampled = 1e-4;
+
 /// What an operator would cost.
 struct OperatorEstimate {
   OperatorKind kind = OperatorKind::dense;

@@ -58,9 +58,11 @@ std::optional<OperatorKind> operator_from_name(std::string_view text) {
 
 OperatorChoice choose_operator(const PatchMesh& mesh, const PlanOptions& options, double most_bytes) {
   OperatorChoice choice;
-  choice.estimates = {{OperatorKind::dense, dense_cost(mesh, options)},
-                      {OperatorKind::gather, estimated_gather_cost(mesh, options)},
-                      {OperatorKind::hierarchical, estimated_hierarchical_cost(mesh, options)}};
+  choice.estimates = {{OperatorKind::dense, dense_cost(mesh, options)}};
+  if (options.form_factors.accuracy >= finest_sampled) {
+    choice.estimates.push_back({OperatorKind::gather, estimated_gather_cost(mesh, options)});
+    choice.estimates.push_back({OperatorKind::hierarchical, estimated_hierarchical_cost(mesh, options)});
+  }
   const OperatorEstimate* best = nullptr;
   const auto better = [](const OperatorEstimate& a, const OperatorEstimate& b) {
     if (a.fits != b.fits) return a.fits;
