@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <array>
+#include <cmath>
 #include <map>
 #include <vector>
 
@@ -85,6 +86,29 @@ class SceneBuilder {
     side(corner(0, 1, 0), corner(0, 1, 1), corner(1, 1, 1), corner(1, 1, 0));
     side(corner(0, 0, 0), corner(0, 0, 1), corner(0, 1, 1), corner(0, 1, 0));
     side(corner(1, 0, 0), corner(1, 1, 0), corner(1, 1, 1), corner(1, 0, 1));
+  }
+
+  /// A closed prism between two rings of `count` points about the segment from `from` to `to`, seen from
+  /// outside: quads around it, triangles on its ends.
+  void prism(const Vec3& from, const Vec3& to, double radius, int count) {
+    const Vec3 axis = (to - from).normalized(), u = axis.unitOrthogonal(), v = axis.cross(u);
+    const auto at = [&](const Vec3& centre, int k) -> Vec3 {
+      const double angle = 2 * 3.14159265358979323846 * (k % count) / count;
+      return centre + radius * (std::cos(angle) * u + std::sin(angle) * v);
+    };
+    std::vector<Vec3> bottom, top;
+    for (int k = 0; k < count; ++k) {
+      bottom.push_back(at(from, -k + count));
+      top.push_back(at(to, k));
+    }
+    for (const auto& ring : {bottom, top}) {
+      const int number = polygon(ring);
+      for (std::size_t k = 1; k + 1 < ring.size(); ++k) patch({ring[0], ring[k], ring[k + 1]}, number);
+    }
+    for (int k = 0; k < count; ++k) {
+      const std::vector<Vec3> side{at(from, k), at(from, k + 1), at(to, k + 1), at(to, k)};
+      patch(side, polygon(side));
+    }
   }
 
   PatchMesh take() { return std::move(mesh_); }

@@ -223,6 +223,42 @@ TEST(Closure, SaysWhichEnclosureCannotBeClosed) {
   for (int i = 3; i < 6; ++i) EXPECT_NEAR(closed.transport->row_sums()[i], 1, 1e-12);
 }
 
+TEST(Closure, IsRefusedWhereItWouldChangeEntriesByTooMuch) {
+  // two spheres; the entries of the first are all 4 % too small: factors of 1 / 0.96 close it, but for
+  // the diagonals, which flat patches do not have
+  const int size = 200;
+  const Sphere one = sphere(size, Precision::float64, 0);
+  ExchangeMatrix exchange(2 * size, Precision::float64);
+  std::vector<double> areas = one.areas;
+  areas.insert(areas.end(), one.areas.begin(), one.areas.end());
+  for (int i = 0; i < size; ++i) {
+    for (int j = 0; j < i; ++j) {
+      exchange.set(i, j, 0.96 * one.exchange(i, j));
+      exchange.set(size + i, size + j, one.exchange(i, j));
+    }
+  }
+  Enclosures enclosures = all_closed(2 * size);
+  enclosures.count = 2;
+  enclosures.enclosure_closed = {1, 1};
+  for (int i = size; i < 2 * size; ++i) enclosures.enclosure[i] = 1;
+  const double first = exchange(7, 3), second = exchange(size + 7, size + 3);
+
+  const ClosedOperator closed = close_rows(std::move(exchange), areas, enclosures, {}, 0.02);
+
+  // two patches' diagonals, of up to 1.5 / 200 each, come on top
+  EXPECT_GT(closed.closure.refused_correction, 1 / 0.96 - 1);
+  EXPECT_LT(closed.closure.refused_correction, 1 / 0.96 - 1 + 0.02);
+  EXPECT_LT(closed.closure.unclosed, size);
+  EXPECT_GE(closed.closure.unclosed, 0);
+  EXPECT_NE(closed.closure.message.find("patch"), std::string::npos) << closed.closure.message;
+  EXPECT_TRUE(closed.closure.applied);  // to the other sphere
+  EXPECT_LT(closed.closure.largest_correction, 0.02);
+  EXPECT_EQ((*closed.transport->entries())(7, 3), first);
+  EXPECT_GT((*closed.transport->entries())(size + 7, size + 3), second);
+  EXPECT_NEAR(closed.transport->row_sums()[size], 1, 1e-12);
+  EXPECT_LT(closed.transport->row_sums()[0], 0.97);
+}
+
 TEST(Closure, GivesTheSameBitsForAnyNumberOfThreads) {
   const auto close = [] {
     Sphere raw = sphere(1500, Precision::float32, 1e-2);

@@ -179,6 +179,40 @@ TEST(Enclosures, MeasureSharesAsWellAsAsked) {
   EXPECT_LT(found.rays, 5 * 256 * 65);
 }
 
+TEST(MeasureShares, BringsTheErrorsOfOpenEnclosuresDownToTheAccuracy) {
+  Boxes boxes = Boxes().add({0, 0, 0}, {1, 1, 1}, true);
+  boxes.faces.erase(boxes.faces.begin() + 1);
+  boxes.add({3, 0, 0}, {4, 1, 1}, true);
+  const PatchMesh mesh = boxes.mesh();
+  const RayScene scene(mesh.occluders);
+  Enclosures found = find_enclosures(mesh, scene);
+  const std::int64_t before = found.rays;
+
+  measure_shares(found, mesh, scene, 1e-3, 1'000'000);
+
+  // Howell C-11 and C-14; errors are forecast to a factor of 1.5
+  EXPECT_NEAR(found.open_share[0], 0.199825, 4e-3);
+  for (int i = 1; i < 5; ++i) EXPECT_NEAR(found.open_share[i], 0.200044, 4e-3);
+  for (int i = 0; i < 5; ++i) EXPECT_LT(found.share_error[i], 1.5e-3);
+  for (int i = 5; i < 11; ++i) EXPECT_EQ(found.share_error[i], 0);
+  EXPECT_GT(found.rays, before);
+  EXPECT_LE(found.rays, before + 5 * 64 * 256);
+}
+
+TEST(MeasureShares, CastsNoMoreRaysThanAllowed) {
+  Boxes box = Boxes().add({0, 0, 0}, {1, 1, 1}, true);
+  box.faces.erase(box.faces.begin() + 1);
+  const PatchMesh mesh = box.mesh();
+  const RayScene scene(mesh.occluders);
+  Enclosures found = find_enclosures(mesh, scene);
+  const std::int64_t before = found.rays;
+
+  measure_shares(found, mesh, scene, 1e-5, 5 * 1024);
+
+  EXPECT_EQ(found.rays, before + 5 * 1024);
+  EXPECT_THROW(measure_shares(found, mesh, scene, 0, 5 * 1024), std::invalid_argument);
+}
+
 TEST(Enclosures, CoincidentSheetsPartTheRoomsThatTheyFace) {
   const Enclosures found = enclosures_of(rooms_with_a_hole(0).mesh());
 

@@ -39,7 +39,7 @@ inline LitRoom lit_room(int walls, int sides) {
 }
 
 /// With exact visibility, closed.
-inline ClosedOperator dense_of(const PatchMesh& mesh, double accuracy = 1e-4) {
+inline ClosedOperator dense_of(const PatchMesh& mesh, double accuracy = 5e-4) {
   FormFactorOptions options;
   options.accuracy = accuracy;
   return close_rows(form_factors(mesh, options).exchange_areas, mesh.areas, enclosures_of(mesh));

@@ -88,6 +88,36 @@ TEST(OccluderSet, TakesAFloatingBoxAsOneBody) {
   }
 }
 
+TEST(OccluderSet, TakesAPrismOfManySidesAsOneRoundBody) {
+  SceneBuilder scene;
+  scene.box({0, 0, 0}, {1, 1, 1}, Eigen::Matrix3d::Identity(), 2, true);
+  scene.prism({0.3, 0.4, 0.3}, {0.6, 0.5, 0.7}, 0.15, 24);
+
+  const OccluderSet set = occluders_of(scene.take());
+
+  ASSERT_EQ(set.occluders.size(), 1u);
+  EXPECT_TRUE(set.occluders[0].round());
+  EXPECT_EQ(set.occluders[0].vertices.size(), 48u);
+  // the centre is off the axis by no more than the ends' pieces pull it; sides keep 0.15 cos(pi / 24) from
+  // that
+  EXPECT_GT(set.occluders[0].inner_radius, 0.1);
+  EXPECT_LT(set.occluders[0].inner_radius, 0.15);
+}
+
+TEST(OccluderSet, DoesNotTrustARoundBodyThatSharesAVertex) {
+  SceneBuilder scene;
+  scene.box({0, 0, 0}, {1, 1, 1}, Eigen::Matrix3d::Identity(), 2, true);
+  scene.prism({0.5, 0.5, 0.3}, {0.5, 0.5, 0.7}, 0.15, 24);
+  const Vec3 rim = Vec3(0.5, 0.5, 0.7) + 0.15 * Vec3::UnitZ().unitOrthogonal();
+  scene.patch({rim, rim + Vec3(0.1, 0, 0.1), rim + Vec3(0, 0.1, 0.1)},
+              scene.polygon({rim, rim + Vec3(0.1, 0, 0.1), rim + Vec3(0, 0.1, 0.1)}));
+
+  const OccluderSet set = occluders_of(scene.take());
+
+  EXPECT_TRUE(std::none_of(set.occluders.begin(), set.occluders.end(),
+                           [](const Occluder& occluder) { return occluder.body(); }));
+}
+
 TEST(OccluderSet, DoesNotTrustABodyWithPatchesInside) {
   SceneBuilder scene;
   scene.box({0, 0, 0}, {1, 1, 1}, Eigen::Matrix3d::Identity(), 2, true);

@@ -51,7 +51,7 @@ TEST(RayVisibility, AgreesWithClippingWithoutBias) {
   std::vector<RayPair> pairs;
   for (const Partial& p : partial) pairs.push_back(p.pair);
 
-  const std::vector<RayShare> shares = RayVisibility(tree, set, 1).visible(pairs);
+  const std::vector<RayShare> shares = RayVisibility(tree, OccluderScene(set), 1).visible(pairs);
 
   double bias = 0, squares = 0, largest = 0;
   for (std::size_t k = 0; k < shares.size(); ++k) {
@@ -72,7 +72,8 @@ TEST(RayVisibility, DependsOnTheSeedAndThePairAlone) {
   const OccluderSet set = occluder_set(mesh, tree);
   std::vector<RayPair> pairs;
   for (const Partial& p : partial_pairs(mesh, tree, set, 29)) pairs.push_back(p.pair);
-  const RayVisibility rays(tree, set, 5), others(tree, set, 6);
+  const OccluderScene scene(set);
+  const RayVisibility rays(tree, scene, 5), others(tree, scene, 6);
 
   const auto together = rays.visible(pairs), different = others.visible(pairs);
 

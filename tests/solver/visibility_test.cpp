@@ -220,6 +220,23 @@ TEST(Visibility, ClosesRoomsWithBoxesToTheAccuracyAsked) {
   }
 }
 
+TEST(Visibility, ClosesRoomsWithRoundBodiesToTheAccuracyAsked) {
+  // two prisms, planes of whose sides and ends run through each other; the box beside them overlaps their
+  // shadows
+  SceneBuilder scene;
+  scene.box({0, 0, 0}, {1, 1, 1}, Eigen::Matrix3d::Identity(), 2, true);
+  scene.prism({0.2, 0.3, 0.3}, {0.45, 0.4, 0.5}, 0.12, 17);
+  scene.prism({0.5, 0.75, 0.15}, {0.55, 0.7, 0.85}, 0.1, 18);
+  scene.box({0.7, 0.2, 0.4}, {0.85, 0.4, 0.7}, turned(0.3, 0.5, 0.7), 2, false);
+  const PatchMesh mesh = scene.take();
+  for (double accuracy : {1e-2, 1e-3, 1e-5}) {
+    const RowErrors errors = row_errors(factors(mesh, accuracy), mesh);
+
+    EXPECT_LE(errors.rms, accuracy);
+    EXPECT_LE(errors.max, 2 * accuracy);
+  }
+}
+
 TEST(Visibility, ClosesARoomWithABoxOnItsUnsplitFloor) {
   SceneBuilder scene;
   scene.box({0, 0, 0}, {1, 1, 1}, Eigen::Matrix3d::Identity(), 5, true);
@@ -241,6 +258,75 @@ TEST(Visibility, ClosesARoomWithABoxOnItsUnsplitFloor) {
     }
   }
   EXPECT_EQ(dark, 4 + 4);
+}
+
+// A cube full of small two-sided sheets, each in a cell of its own: so many that rays sort the blocks.
+PatchMesh room_with_leaves() {
+  SceneBuilder scene;
+  scene.box({0, 0, 0}, {1, 1, 1}, Eigen::Matrix3d::Identity(), 6, true);
+  for (int k = 0; k < 64; ++k) {
+    const Vec3 centre = Vec3(k % 4 + 0.5, k / 4 % 4 + 0.5, k / 16 + 0.5) / 4;
+    const Eigen::Matrix3d turn = turned(0.7 * k, 1.1 * k, 1.9 * k);
+    const Vec3 u = 0.07 * turn.col(0), v = 0.05 * turn.col(1);
+    scene.quad(centre - u - v, centre + u - v, centre + u + v, centre - u + v, 1, 2);
+  }
+  return scene.take();
+}
+
+TEST(Visibility, ClosesARoomFullOfLeavesToTheAccuracyAsked) {
+  const PatchMesh mesh = room_with_leaves();
+
+  for (double accuracy : {1e-2, 1e-3}) {
+    const FormFactors f = factors(mesh, accuracy);
+
+    const RowErrors errors = row_errors(f, mesh);
+    EXPECT_LE(errors.rms, accuracy);
+    EXPECT_LE(errors.max, 2 * accuracy);
+    EXPECT_GT(f.report.rays, 0);
+  }
+}
+
+TEST(Visibility, CutsTheFloorWhereAWallStandsOnIt) {
+  // the patch that looks on may be smaller or larger than the floor: either of the two is then the one that
+  // is cut
+  for (double size : {0.5, 4.0}) {
+    SceneBuilder scene;
+    scene.placement.rotate(turned(0.7, 0.4, -0.9));
+    const std::vector<Vec3> looking{{3, -size, 1}, {3, -size, 1 + size}, {3, size, 1 + size}, {3, size, 1}};
+    const std::vector<Vec3> floor{{-0.4, -1, 0}, {2, -1, 0}, {2, 1, 0}, {-0.4, 1, 0}};
+    const std::vector<Vec3> before_wall{{0.3, -1, 0}, {2, -1, 0}, {2, 1, 0}, {0.3, 1, 0}};
+    const std::vector<Vec3> wall{{0.3, -9, 0}, {0.3, 9, 0}, {0.3, 9, 9}, {0.3, -9, 9}};
+    for (const auto& corners : {looking, floor, wall}) scene.patch(corners, scene.polygon(corners));
+
+    const FormFactors f = factors(scene.take(), 1e-6, Visibility::exact);
+
+    const double seen = exchange_area(looking, before_wall);
+    EXPECT_NEAR(f.exchange_areas(0, 1), seen, 1e-6 * seen) << size;
+  }
+}
+
+TEST(Visibility, LeavesFloorUnderABoxItsUncoveredPart) {
+  SceneBuilder scene;
+  scene.placement.rotate(turned(0.2, 0.4, -0.9));
+  scene.box({0, 0, 0}, {1, 1, 1}, Eigen::Matrix3d::Identity(), 3, true);
+  scene.box({0.25, 0.2, 0}, {0.6, 0.7, 0.5}, Eigen::Matrix3d::Identity(), 2, false);
+  const PatchMesh mesh = scene.take();
+
+  const FormFactors f = factors(mesh, 1e-5);
+
+  for (int i = 0; i < mesh.size(); ++i) {
+    const Vec3 centre = scene.placement.inverse() * mesh.centroids[i];
+    double expected = 1;
+    if (std::abs(centre.z()) < 1e-9) {
+      // of the floor what the box leaves free; of the box's bottom nothing
+      const auto covered = [](double middle, double low, double high) {
+        return std::max(0.0, std::min(middle + 1.0 / 6, high) - std::max(middle - 1.0 / 6, low));
+      };
+      expected = 1 - 9 * covered(centre.x(), 0.25, 0.6) * covered(centre.y(), 0.2, 0.7);
+      if (i >= 54) expected = 0;
+    }
+    EXPECT_NEAR(exchange(f, i, i + 1, 0, mesh.size()) / mesh.areas[i], expected, 2e-5) << centre.transpose();
+  }
 }
 
 TEST(Visibility, KeepsTheInsideOfABoxApartFromItsOutside) {
@@ -327,8 +413,11 @@ TEST(Visibility, DoesNotDependOnPlaceSizeOrDirection) {
 }
 
 TEST(Visibility, HasTheSameBitsForAnyNumberOfThreads) {
-  const PatchMesh mesh = testing::room_with_turned_boxes(6, 3);
-  for (Visibility way : {Visibility::automatic, Visibility::rays}) {
+  const PatchMesh boxes = testing::room_with_turned_boxes(6, 3), leaves = room_with_leaves();
+  for (const auto& [scene, way] :
+       {std::pair(&boxes, Visibility::automatic), std::pair(&boxes, Visibility::rays),
+        std::pair(&leaves, Visibility::automatic)}) {
+    const PatchMesh& mesh = *scene;
     FormFactors one, two;
     {
       const tbb::global_control single(tbb::global_control::max_allowed_parallelism, 1);

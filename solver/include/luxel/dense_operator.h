@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
@@ -33,15 +34,19 @@ struct ClosureReport {
   double largest_correction = 0;  ///< largest |factor - 1| that any entry was multiplied by
   bool applied = false;  ///< some enclosure was scaled; false for open scenes: their missing share is sky
   int iterations = 0;    ///< Newton steps
-  int unclosed = -1;     ///< a patch of the enclosure that could not be closed; -1: none such
-  std::string message;   ///< one sentence: which enclosure could not be closed; else empty
+  int unclosed = -1;     ///< a patch of the enclosure that was not closed; -1: none such
+  /// The largest correction that was refused, |factor - 1| of an entry; 0: none was.
+  double refused_correction = 0;
+  std::string message;  ///< one sentence: which enclosure was not closed, and why; else empty
 };
 
 /// Row sums s_i = sum_j A_i F_ij / A_i of stored exchange areas, in float64. Cost: one pass.
 std::vector<double> row_sums(const ExchangeMatrix& exchange_areas, std::span<const double> areas);
 
-/// The sentence of ClosureReport::message for the enclosure of this patch.
+/// The sentences of ClosureReport::message for the enclosure of this patch: no factors close it, or too large
+/// ones would.
 std::string unclosed_message(int patch);
+std::string refused_message(int patch, double correction, double limit);
 
 /// F from stored exchange areas. Symmetric; has entries().
 class DenseOperator : public TransportOperator {
@@ -79,8 +84,15 @@ struct ClosedOperator {
 /// at most min(A_i, A_j); the rounding of the stored entries goes to the diagonal, so that closure holds to
 /// 1e-12. Open enclosures are left as they are, and so are closed ones whose rows no factors within [1/4, 4]
 /// close. Cost: about 20 passes over the matrix; memory besides: a few vectors.
+/// @param correction_limit  an enclosure in which an entry would change by more than this share is left raw
+/// too: a defect far above the accuracy of the entries is no rounding to be spread out, but a wrong matrix.
+/// Ten times the accuracy that was asked for is sensible.
 /// @throws std::invalid_argument for shapes; Cancelled
 ClosedOperator close_rows(ExchangeMatrix exchange_areas, std::vector<double> areas,
-                          const Enclosures& enclosures, const Progress& progress = {});
+                          const Enclosures& enclosures, const Progress& progress = {},
+                          double correction_limit = std::numeric_limits<double>::infinity());
+
+/// A correction above this times the accuracy asked for is refused.
+constexpr double most_correction = 10;
 
 }  // namespace luxel

@@ -33,7 +33,7 @@ struct HierarchicalReport {
   std::int64_t rays = 0;      ///< cast to find what is hidden
   int occluders = 0;          ///< convex polygons that can hide anything; 0: no ray was cast
   std::size_t bytes = 0;      ///< of the operator
-  ClosureReport closure;      ///< row sums before and after they were scaled
+  ClosureReport closure;      ///< row sums before and after they were scaled; largest_correction is a bound
 };
 
 /// F by blocks between clusters of patches: the kernel at a few nodes of either cluster, light interpolated

@@ -121,7 +121,55 @@ int rays_needed(int rays, double times) {
   return rays << static_cast<int>(std::clamp(doublings, 1.0, static_cast<double>(most_doublings)));
 }
 
+/// The most rays that one patch may have for all to have no more than `most`: a power of two times `rays`.
+int largest_share(const std::vector<int>& wanted, int rays, std::int64_t most) {
+  int each = rays;
+  while (each < (1 << 30)) {
+    std::int64_t total = 0;
+    for (int w : wanted) total += std::min(w, 2 * each);
+    if (total > most) break;
+    each *= 2;
+    if (std::all_of(wanted.begin(), wanted.end(), [&](int w) { return w <= each; })) break;
+  }
+  return each;
+}
+
 }  // namespace
+
+void measure_shares(Enclosures& enclosures, const PatchMesh& mesh, const RayScene& occluders, double accuracy,
+                    std::int64_t most_rays, int rays_per_patch, const Progress& progress) {
+  if (!(accuracy > 0)) throw std::invalid_argument("measure_shares: the accuracy must be above 0");
+  std::vector<int> loose;
+  std::vector<int> wanted;
+  for (int i = 0; i < mesh.size(); ++i) {
+    if (enclosures.enclosure_closed[enclosures.enclosure[i]] || enclosures.share_error[i] <= accuracy)
+      continue;
+    loose.push_back(i);
+    wanted.push_back(rays_needed(rays_per_patch, enclosures.share_error[i] / accuracy));
+  }
+  const int count = static_cast<int>(loose.size());
+  const int each = largest_share(wanted, rays_per_patch, most_rays);
+  if (count == 0 || each <= rays_per_patch) return;
+  const PatchLocator locator(mesh);
+  UnionFind sets(mesh.size());
+  StageProgress stage(progress, "sky", count);
+  std::atomic<std::int64_t> rays = 0;
+  tbb::parallel_for(tbb::blocked_range<int>(0, count, 16), [&](const tbb::blocked_range<int>& range) {
+    if (stage.cancelled()) return;
+    for (int k = range.begin(); k < range.end(); ++k) {
+      const int i = loose[k], asked = std::min(wanted[k], each);
+      const Shares shares = measured(look_around(mesh, occluders, locator, i, asked, sets));
+      rays += asked;
+      enclosures.open_share[i] = shares.open;
+      enclosures.back_share[i] = shares.back;
+      const bool unanimous = shares.open + shares.back == 0 || shares.open + shares.back == 1;
+      enclosures.share_error[i] = unanimous ? 1.0 / asked : shares.error;
+    }
+    stage.add(range.size());
+  });
+  stage.finish();
+  enclosures.rays += rays;
+}
 
 Enclosures find_enclosures(const PatchMesh& mesh, const RayScene& occluders, int rays_per_patch,
                            const Progress& progress, double share_accuracy) {

@@ -16,7 +16,7 @@ namespace HWY_NAMESPACE {
 class Batch {
  public:
   static std::size_t memory(std::size_t corners, std::size_t edges, std::size_t cones) {
-    return (6 * corners + 9 * edges + 2 * (cones + 1)) * hn::Lanes(D());
+    return (6 * corners + 10 * edges + 2 * (cones + 1)) * hn::Lanes(D());
   }
 
   Batch(const Vec3s& eye, const Vec3& normal, const Polygon& inner, const Shadows& shadows, double* memory)
@@ -28,7 +28,8 @@ class Batch {
         p_(memory + 6 * corners_ * hn::Lanes(d_), d_),
         q_(memory + (6 * corners_ + 3 * shadows.edges.size()) * hn::Lanes(d_), d_),
         bound_(memory + (6 * corners_ + 6 * shadows.edges.size()) * hn::Lanes(d_), d_),
-        cover_(memory + (6 * corners_ + 9 * shadows.edges.size()) * hn::Lanes(d_), d_) {
+        active_(memory + (6 * corners_ + 9 * shadows.edges.size()) * hn::Lanes(d_), d_),
+        cover_(memory + (6 * corners_ + 10 * shadows.edges.size()) * hn::Lanes(d_), d_) {
     for (std::size_t k = 0; k < corners_; ++k) {
       sight_.set(k, minus(broadcast(d_, inner.corners[k]), eye));
     }
@@ -39,7 +40,9 @@ class Batch {
       p_.set(e, p);
       q_.set(e, q);
       bound_.set(e, cross(q, p));
+      if (!shadows.turning.empty()) active_.set(e, hn::Set(d_, 1.0));
     }
+    for (const Turning& turning : shadows.turning) turn(eye, turning);
   }
 
   V hidden() {
@@ -54,6 +57,22 @@ class Batch {
   }
 
  private:
+  V height(const Vec3s& eye, const Plane& plane) const {
+    return hn::Sub(dot(broadcast(d_, plane.normal), eye), hn::Set(d_, plane.offset));
+  }
+
+  // Which way round the edge bounds the shadow: not at all where its inward normal becomes 0.
+  void turn(const Vec3s& eye, const Turning& turning) {
+    const std::size_t e = static_cast<std::size_t>(turning.edge);
+    const V zero = hn::Zero(d_), one = hn::Set(d_, 1.0);
+    const V left = hn::IfThenElse(hn::Gt(height(eye, turning.left), zero), one, zero);
+    const V right = hn::IfThenElse(hn::Gt(height(eye, turning.right), zero), one, zero);
+    const V sign = hn::Sub(left, right);
+    const Vec3s bound = bound_[e];
+    bound_.set(e, {hn::Mul(sign, bound.x), hn::Mul(sign, bound.y), hn::Mul(sign, bound.z)});
+    active_.set(e, hn::Abs(sign));
+  }
+
   std::size_t next(std::size_t k) const { return k + 1 < corners_ ? k + 1 : 0; }
 
   // The part of the inner polygon's edge k that the shadows hide.
@@ -86,6 +105,9 @@ class Batch {
         keep_positive(d_, dot(bound, p), dot(bound, q), whole);
       }
     }
+    if (!shadows_.turning.empty()) {
+      whole.high = hn::IfThenElse(hn::Gt(active_[e], hn::Zero(d_)), whole.high, hn::Set(d_, -1.0));
+    }
     if (hn::AllFalse(d_, hn::Gt(whole.high, whole.low))) return hn::Zero(d_);
     cover_.reset(shadows_.begin.size());
     for (int other = 0; other < shadows_.count(); ++other) {
@@ -113,6 +135,7 @@ class Batch {
   std::size_t corners_;
   Vectors sight_, inward_;  // per corner: the corner from the eye, inward normal of the edge that it begins
   Vectors p_, q_, bound_;   // per shadow edge: its ends from the eye, the inward normal of its plane
+  Numbers active_;          // per shadow edge: 1 where it bounds the shadow, else 0; where any turns
   Cover cover_;
 };
 

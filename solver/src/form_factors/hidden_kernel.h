@@ -22,6 +22,14 @@ struct ShadowEdge {
   Vec3 p, q;
 };
 
+/// The faces on both sides of an edge of a round body: the edge belongs to the silhouette as seen from eyes
+/// that are in front of one of them only, and bounds what is hidden as p-q seen by those in front of `left`,
+/// as q-p by the others.
+struct Turning {
+  int edge = 0;  ///< in Shadows::edges
+  Plane left, right;
+};
+
 /// Convex cones of sight that occluders block, as seen from any point of one cell of the outer patch: cone k
 /// is bounded by edges [begin[k], begin[k + 1]). Edges that never cross the inner patch are left out; a cone
 /// has at least one edge.
@@ -30,6 +38,7 @@ struct Shadows {
   std::vector<int> begin{0};
   std::vector<char> cut;  ///< per cone: one of its edges is a cut by a face's plane, so that it must be
                           ///< clipped by its own edges too
+  std::vector<Turning> turning;   ///< by edge; the other edges bound the same side for every eye
   std::vector<signed char> ties;  ///< edges x edges, see tie(); empty for one cone
 
   /// How two edges of different cones lie for every eye: 0 apart, +1 on one line with the same side inside,

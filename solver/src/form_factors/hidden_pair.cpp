@@ -11,10 +11,6 @@ namespace luxel {
 
 namespace {
 
-// Six times the volume of eye, edge (of length 1) and target is rounded by a few units in the last place of
-// coordinates up to 1: below this an edge passes by.
-constexpr double volume_rounding = 1e-14;
-
 // Parts of a patch below this share of its area are what clipping leaves of a common edge.
 constexpr double sliver_share = 1e-12;
 
@@ -30,18 +26,28 @@ constexpr std::size_t most_cells = 400;
 // cheaper to look first.
 constexpr double cut_first = 2e-3;
 
-double side(const Span& span) {
-  return span.high > -span.low ? span.high : span.low;
-}
+// Kinks that both rules miss alike are found by halving more than the rules' difference asks for.
+constexpr double round_share = 0.5;
+constexpr int round_halvings = 4;
+
+}  // namespace
 
 double touching_depth(const WorkPatch& patch) {
   return std::max(side_tolerance, touching_share * patch.area / patch.edge);
 }
 
-}  // namespace
-
 HiddenPair::HiddenPair(const PatchMesh& mesh, const ClusterTree& tree, const OccluderSet& set)
-    : mesh_(mesh), tree_(tree), set_(set) {}
+    : mesh_(mesh),
+      tree_(tree),
+      set_(set),
+      round_body_(static_cast<std::size_t>(mesh.occluders.polygon_count), -1) {
+  for (std::size_t k = 0; k < set.occluders.size(); ++k) {
+    const Occluder& occluder = set.occluders[k];
+    if (!occluder.round()) continue;
+    for (int f = occluder.begin; f < occluder.end; ++f)
+      round_body_[set.faces[f].polygon] = static_cast<int>(k);
+  }
+}
 
 HiddenPair::Ends HiddenPair::ends(int s, int t, const std::vector<Candidate>& candidates) const {
   const WorkPatch *first = &tree_.patches[s], *second = &tree_.patches[t];
@@ -53,6 +59,15 @@ HiddenPair::Ends HiddenPair::ends(int s, int t, const std::vector<Candidate>& ca
     along += a / (a + b) / static_cast<double>(candidates.size());
   }
   if (first->edge * (1 - along) > second->edge * along) std::swap(first, second);
+  // round bodies are on one side of the inner patch's plane, if they can be
+  for (const Candidate& candidate : candidates) {
+    const Occluder& occluder = set_.occluders[candidate.occluder];
+    if (occluder.round() && side_of_plane(occluder, second->plane) == Side::both &&
+        side_of_plane(occluder, first->plane) != Side::both) {
+      std::swap(first, second);
+      break;
+    }
+  }
   Ends ends{first, second, {}, {}};
   ends.cell = clip(first->outline, second->plane, side_tolerance);
   ends.target = clip(second->outline, first->plane, side_tolerance);
@@ -63,6 +78,10 @@ HiddenPair::Ends HiddenPair::ends(int s, int t, const std::vector<Candidate>& ca
 // of.
 bool HiddenPair::own(const Occluder& occluder, const Ends& ends) const {
   const int outer = mesh_.polygons[ends.outer->patch], inner = mesh_.polygons[ends.inner->patch];
+  if (occluder.round()) {
+    const auto k = static_cast<int>(&occluder - set_.occluders.data());
+    return round_body_[outer] == k || round_body_[inner] == k;
+  }
   for (int f = occluder.begin; f < occluder.end; ++f) {
     const int polygon = set_.faces[f].polygon;
     if (polygon == outer || polygon == inner) return true;
@@ -76,7 +95,7 @@ std::vector<Polygon> HiddenPair::cells_by_side(const Ends& ends,
   const double length = ends.outer->edge, depth = touching_depth(*ends.outer);
   for (const Candidate& candidate : candidates) {
     const Occluder& occluder = set_.occluders[candidate.occluder];
-    if (own(occluder, ends)) continue;
+    if (occluder.round() || own(occluder, ends)) continue;
     for (int f = occluder.begin; f < occluder.end; ++f) {
       const Plane& plane = set_.faces[f].plane;
       const Span span = span_along(ends.cell, plane);
@@ -94,112 +113,6 @@ std::vector<Polygon> HiddenPair::cells_by_side(const Ends& ends,
     }
   }
   return cells;
-}
-
-// The cut of the target by a face's plane bounds what lies behind the face.
-bool HiddenPair::add_cut(const Polygon& cell, const Polygon& target, const Plane& behind) {
-  Vec3 ends[2];
-  int found = 0;
-  // the corner farthest from the plane, on either side of it, tells on which side of the cut it lies
-  Vec3 farthest = target[0];
-  double height = 0;
-  for (int k = 0; k < target.count; ++k) {
-    const double here = behind.distance(target[k]), there = behind.distance(target.next(k));
-    if (std::abs(here) > std::abs(height)) {
-      height = here;
-      farthest = target[k];
-    }
-    if ((here >= 0) == (there >= 0)) continue;
-    if (found < 2) ends[found++] = target[k] + (here / (here - there)) * (target.next(k) - target[k]);
-  }
-  if (found < 2 || (ends[1] - ends[0]).squaredNorm() < 1e-28) return false;
-  const Vec3 eye = centroid(cell);
-  const double volume = (ends[1] - eye).cross(ends[0] - eye).dot(farthest - eye);
-  if ((volume < 0) == (height < 0)) std::swap(ends[0], ends[1]);
-  cuts_.push_back({ends[0], ends[1]});
-  return true;
-}
-
-HiddenPair::Cast HiddenPair::cast(const Polygon& cell, const Ends& ends, const Occluder& occluder) {
-  edges_.clear();
-  cuts_.clear();
-  const double depth = touching_depth(*ends.inner);
-  if (!occluder.body()) {
-    const OccluderFace& face = set_.faces[occluder.begin];
-    const double height = side(span_along(cell, face.plane));
-    if (std::abs(height) <= side_tolerance) return Cast::misses;
-    const Plane seen = height > 0 ? face.plane : face.plane.flipped();
-    const Span span = span_along(ends.target, seen);
-    if (span.low >= -depth) return Cast::misses;
-    if (span.high > depth) add_cut(cell, ends.target, seen);
-    for (int k = 0; k < face.outline.count; ++k) {
-      if (height > 0) {
-        edges_.push_back({face.outline[k], face.outline.next(k)});
-      } else {
-        edges_.push_back({face.outline.next(k), face.outline[k]});
-      }
-    }
-  } else {
-    unsigned front = 0;
-    for (int k = 0; k < occluder.face_count(); ++k) {
-      const Plane& plane = set_.faces[occluder.begin + k].plane;
-      const double height = side(span_along(cell, plane));
-      if (height <= side_tolerance) continue;
-      front |= 1u << k;
-      const Span span = span_along(ends.target, plane);
-      if (span.low >= -depth) return Cast::misses;
-      if (span.high > depth) add_cut(cell, ends.target, plane);
-    }
-    if (front == 0) return Cast::misses;
-    for (const BodyEdge& edge : occluder.edges) {
-      const bool left = front >> edge.face & 1u, right = front >> edge.neighbour & 1u;
-      if (left && !right) edges_.push_back({edge.p, edge.q});
-      if (right && !left) edges_.push_back({edge.q, edge.p});
-    }
-  }
-
-  // an edge matters where some line of sight passes it on the one side and some on the other
-  const std::size_t first = shadows_.edges.size();
-  for (const ShadowEdge& edge : edges_) {
-    const Vec3 along = (edge.q - edge.p).normalized(), moment = edge.p.cross(along);
-    double low = 0, high = 0;
-    for (std::size_t k = 0; k < lines_.size(); ++k) {
-      const double volume = -(moment.dot(sights_[k]) + along.dot(lines_[k]));
-      low = std::min(low, volume);
-      high = std::max(high, volume);
-    }
-    if (high <= volume_rounding) {
-      shadows_.edges.resize(first);
-      return Cast::misses;
-    }
-    if (low < -volume_rounding) shadows_.edges.push_back(edge);
-  }
-  shadows_.edges.insert(shadows_.edges.end(), cuts_.begin(), cuts_.end());
-  if (shadows_.edges.size() == first) return Cast::everything;
-  shadows_.begin.push_back(static_cast<int>(shadows_.edges.size()));
-  shadows_.cut.push_back(!cuts_.empty());
-  return Cast::shadow;
-}
-
-HiddenPair::Cast HiddenPair::cast_all(const Polygon& cell, const Ends& ends,
-                                      const std::vector<Candidate>& candidates) {
-  shadows_.clear();
-  lines_.clear();
-  sights_.clear();
-  for (int k = 0; k < cell.count; ++k) {
-    for (int l = 0; l < ends.target.count; ++l) {
-      lines_.push_back(cell[k].cross(ends.target[l]));
-      sights_.push_back(ends.target[l] - cell[k]);
-    }
-  }
-  for (const Candidate& candidate : candidates) {
-    const Occluder& occluder = set_.occluders[candidate.occluder];
-    if (own(occluder, ends)) continue;
-    if (cast(cell, ends, occluder) == Cast::everything) return Cast::everything;
-  }
-  if (shadows_.count() == 0) return Cast::misses;
-  find_ties(shadows_);
-  return Cast::shadow;
 }
 
 bool HiddenPair::covered(const Polygon& cell, const Ends& ends, const std::vector<Candidate>& candidates) {
@@ -236,10 +149,13 @@ HiddenPart HiddenPair::operator()(int s, int t, const std::vector<Candidate>& ca
       continue;
     }
     HiddenQuadrature quadrature(pair.target, normal, shadows_, workspace_);
-    const double allowed = tolerance * std::sqrt(share);
+    // the silhouette of a round body makes events everywhere, each of them slight
+    const bool round = !shadows_.turning.empty(), tight = tolerance <= cut_first * unhidden;
+    const double allowed = tolerance * std::sqrt(share) * (round ? round_share : 1);
     HiddenIntegral integral;
-    if (tolerance > cut_first * unhidden) {
-      integral = quadrature.kinked(std::span(&cell, 1), area(cell, normal), allowed);
+    if (round || !tight) {
+      integral = quadrature.kinked(std::span(&cell, 1), area(cell, normal), allowed,
+                                   round && tight ? round_halvings : 0);
     } else {
       const std::vector<Polygon> smooth =
           cut_by_events(cell, normal, pair.target, shadows_, pair.outer->edge, most_cells);

@@ -19,6 +19,9 @@ struct HiddenPart {
   double error = 0;  ///< estimate
 };
 
+/// A patch that reaches through a face's plane by less than this touches the plane, in working units.
+double touching_depth(const WorkPatch& patch);
+
 /// Visibility of single pairs by clipping: exact in the inner patch, by quadrature over the outer one, which
 /// is cut where the view changes its shape. One per thread: it keeps its working memory.
 class HiddenPair {
@@ -45,6 +48,11 @@ class HiddenPair {
   std::vector<Polygon> cells_by_side(const Ends& ends, const std::vector<Candidate>& candidates) const;
   Cast cast_all(const Polygon& cell, const Ends& ends, const std::vector<Candidate>& candidates);
   Cast cast(const Polygon& cell, const Ends& ends, const Occluder& occluder);
+  Cast cast_face(const Polygon& cell, const Ends& ends, const OccluderFace& face);
+  Cast cast_body(const Polygon& cell, const Ends& ends, const Occluder& body);
+  Cast cast_round(const Polygon& cell, const Occluder& body);
+  Span volumes(const ShadowEdge& edge) const;
+  Cast keep_relevant();
   // Whether nothing of the target is in sight from any point of a rule over the cell.
   bool covered(const Polygon& cell, const Ends& ends, const std::vector<Candidate>& candidates);
   bool add_cut(const Polygon& cell, const Polygon& target, const Plane& behind);
@@ -54,7 +62,9 @@ class HiddenPair {
   const OccluderSet& set_;
   Shadows shadows_;
   HiddenWorkspace workspace_;
+  std::vector<int> round_body_;  // of each polygon the round body that it is part of, or -1
   std::vector<ShadowEdge> edges_, cuts_;
+  std::vector<Span> heights_;
   std::vector<Vec3> lines_, sights_;
 };
 

@@ -28,6 +28,10 @@ constexpr int highest_order = 4;
 // their sum shows that they do not, all is done again with less for each, at most so often.
 constexpr int attempts = 3;
 
+// A corner that differs from all points of the rules has about this share of the part's area: a cone over a
+// third of two of its sides.
+constexpr double corner_share = 0.05;
+
 // What a sum of arcs around a hidden polygon loses to rounding, and a patch to the gap between welded faces.
 constexpr double covered_rounding = 1e-9;
 
@@ -142,8 +146,24 @@ HiddenIntegral HiddenQuadrature::smooth(std::span<const Polygon> cells, double u
   return sum;
 }
 
-HiddenIntegral HiddenQuadrature::kinked(std::span<const Polygon> cells, double whole, double tolerance) {
-  return halved_to(cells, whole, tolerance, add_equal_rules);
+// Where none of the rules' points sees anything hidden: the largest hidden share at a corner. Where all see
+// everything hidden: the largest share that is left. Else 0.
+double HiddenQuadrature::corner_excess(std::size_t begin, std::size_t corners, std::size_t end) const {
+  const auto largest = [&](const auto& excess) {
+    for (std::size_t k = begin; k < corners; ++k) {
+      if (excess(k) > 0) return 0.0;
+    }
+    double found = 0;
+    for (std::size_t k = corners; k < end; ++k) found = std::max(found, excess(k));
+    return found;
+  };
+  return std::max(largest([&](std::size_t k) { return shares_[k]; }),
+                  largest([&](std::size_t k) { return left_over(k); }));
+}
+
+HiddenIntegral HiddenQuadrature::kinked(std::span<const Polygon> cells, double whole, double tolerance,
+                                        int halvings) {
+  return halved_to(cells, whole, tolerance, add_equal_rules, halvings);
 }
 
 HiddenIntegral HiddenQuadrature::cut(std::span<const Polygon> cells, double whole, double tolerance) {
@@ -157,7 +177,9 @@ HiddenIntegral HiddenQuadrature::cut(std::span<const Polygon> cells, double whol
 }
 
 HiddenIntegral HiddenQuadrature::halved_to(std::span<const Polygon> cells, double whole, double tolerance,
-                                           RulePair (*add_rules)(const Polygon&, OuterPoints&)) {
+                                           RulePair (*add_rules)(const Polygon&, OuterPoints&),
+                                           int halvings) {
+  const bool watch_corners = !shadows_.turning.empty();
   struct Part {
     Polygon cell;
     int depth;
@@ -173,7 +195,10 @@ HiddenIntegral HiddenQuadrature::halved_to(std::span<const Polygon> cells, doubl
   while (!parts.empty()) {
     points_.clear();
     rules.clear();
-    for (const Part& part : parts) rules.push_back(add_rules(part.cell, points_));
+    for (const Part& part : parts) {
+      rules.push_back(add_rules(part.cell, points_));
+      if (watch_corners) add_corners(part.cell, points_);
+    }
     hidden_shares(points_, normal_, inner_, shadows_, workspace_, shares_);
     sum.points += static_cast<std::int64_t>(points_.size());
     next.clear();
@@ -182,6 +207,7 @@ HiddenIntegral HiddenQuadrature::halved_to(std::span<const Polygon> cells, doubl
       const Part& part = parts[p];
       const RulePair& rule = rules[p];
       double first = 0, second = 0, size = 0;
+      const std::size_t begin = at;
       for (std::size_t k = 0; k < rule.first; ++k, ++at) {
         first += points_.weight[at] * shares_[at];
         size += points_.weight[at];
@@ -190,7 +216,13 @@ HiddenIntegral HiddenQuadrature::halved_to(std::span<const Polygon> cells, doubl
       const double value = rule.trust * first + (1 - rule.trust) * second;
       const double error = rule.trust * std::abs(first - second);
       const double allowed = tolerance * std::sqrt(size / whole);
-      if (error > allowed && part.depth < deepest) {
+      bool halve_it = error > allowed || part.depth < halvings;
+      if (watch_corners) {
+        const std::size_t end = at + static_cast<std::size_t>(part.cell.count);
+        halve_it = halve_it || corner_share * size * corner_excess(begin, at, end) > allowed;
+        at = end;
+      }
+      if (halve_it && part.depth < deepest) {
         const HalvedCells smaller = halve(part.cell, centroid(part.cell));
         put(next, smaller.first, part.depth + 1);
         put(next, smaller.second, part.depth + 1);
@@ -204,14 +236,19 @@ HiddenIntegral HiddenQuadrature::halved_to(std::span<const Polygon> cells, doubl
   return sum;
 }
 
+double HiddenQuadrature::left_over(std::size_t k) const {
+  const std::span corners(inner_.corners.data(), static_cast<std::size_t>(inner_.count));
+  const Vec3 eye(points_.x[k], points_.y[k], points_.z[k]);
+  const double all = point_form_factor(eye, normal_, corners);
+  return shares_[k] >= (1 - covered_rounding) * all ? 0 : all - shares_[k];
+}
+
 bool HiddenQuadrature::cover(const Polygon& cell) {
   points_.clear();
   add_points(cell, 3, points_);
   hidden_shares(points_, normal_, inner_, shadows_, workspace_, shares_);
-  const std::span corners(inner_.corners.data(), static_cast<std::size_t>(inner_.count));
   for (std::size_t k = 0; k < shares_.size(); ++k) {
-    const Vec3 eye(points_.x[k], points_.y[k], points_.z[k]);
-    if (shares_[k] < (1 - covered_rounding) * point_form_factor(eye, normal_, corners)) return false;
+    if (left_over(k) > 0) return false;
   }
   return true;
 }

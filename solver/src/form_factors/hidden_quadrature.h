@@ -34,8 +34,10 @@ class HiddenQuadrature {
   HiddenIntegral smooth(std::span<const Polygon> cells, double unhidden, double area, double tolerance);
 
   /// Over cells that may hold kinks: two rules of equal degree side by side, halved where they disagree.
-  /// Cheap, and good to some thousandths.
-  HiddenIntegral kinked(std::span<const Polygon> cells, double area, double tolerance);
+  /// Cheap, and good to some thousandths. Where round bodies hide all or nothing from the rules' points but
+  /// not from a corner, cells are halved too.
+  /// @param halvings  at least so many, however well the rules agree
+  HiddenIntegral kinked(std::span<const Polygon> cells, double area, double tolerance, int halvings = 0);
 
   /// Over cells that were cut along the kinks that are straight, but for those where several occluders
   /// overlap: a rule of higher degree, halved where one of lower degree disagrees, and again until the sum of
@@ -48,7 +50,9 @@ class HiddenQuadrature {
  private:
   // Halves cells until each errs by its share of the tolerance; the sum may err by more.
   HiddenIntegral halved_to(std::span<const Polygon> cells, double area, double tolerance,
-                           RulePair (*add_rules)(const Polygon&, OuterPoints&));
+                           RulePair (*add_rules)(const Polygon&, OuterPoints&), int halvings = 0);
+  double left_over(std::size_t point) const;
+  double corner_excess(std::size_t begin, std::size_t corners, std::size_t end) const;
   double distance_to_edges(const Vec3& point) const;
   void place(const Polygon& cell, double unhidden, double area, double tolerance, int depth);
 

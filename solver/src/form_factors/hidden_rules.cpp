@@ -162,6 +162,12 @@ RulePair add_nested_rules(const Polygon& c, OuterPoints& points) {
   return c.count == 4 ? RulePair{9, 4, 1} : RulePair{6, 3, 1};
 }
 
+void add_corners(const Polygon& cell, OuterPoints& points) {
+  constexpr double inwards = 1e-6;
+  const Vec3 middle = centroid(cell);
+  for (int k = 0; k < cell.count; ++k) points.add(cell[k] + inwards * (middle - cell[k]), 0);
+}
+
 std::vector<Polygon> triangles_and_quads(const Polygon& cell) {
   std::vector<Polygon> parts;
   auto add = [&parts](const auto& corners) {

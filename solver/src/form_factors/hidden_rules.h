@@ -25,6 +25,9 @@ RulePair add_equal_rules(const Polygon& triangle_or_quad, OuterPoints& points);
 /// Those of order 3 and 2 of add_points(): the value is the first's, the difference bounds its error.
 RulePair add_nested_rules(const Polygon& triangle_or_quad, OuterPoints& points);
 
+/// Its corners, moved inwards by 1e-6 of the way to its middle, with weight 0.
+void add_corners(const Polygon& cell, OuterPoints& points);
+
 /// The triangles and quads of a fan around the first corner.
 std::vector<Polygon> triangles_and_quads(const Polygon& cell);
 

@@ -31,6 +31,7 @@ void Shadows::clear() {
   edges.clear();
   begin.assign(1, 0);
   cut.clear();
+  turning.clear();
   ties.clear();
 }
 

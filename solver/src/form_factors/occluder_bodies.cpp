@@ -45,6 +45,9 @@ std::map<Edge, int> edges_of(const std::vector<OccluderFace>& faces) {
   return left;
 }
 
+// Up to so many faces a body is tested for being convex: each against each.
+constexpr std::size_t most_faces = 4096;
+
 bool convex(const std::vector<OccluderFace>& faces, const std::vector<int>& members) {
   for (int f : members) {
     for (int g : members) {
@@ -54,8 +57,31 @@ bool convex(const std::vector<OccluderFace>& faces, const std::vector<int>& memb
   return true;
 }
 
+// How many faces meet in each vertex.
+std::map<Key, int> faces_at_vertices(const std::vector<OccluderFace>& faces) {
+  std::map<Key, int> count;
+  for (const OccluderFace& face : faces) {
+    for (int k = 0; k < face.outline.count; ++k) ++count[key(face.outline[k])];
+  }
+  return count;
+}
+
+// The vertices of a body; empty where faces of something else meet in one of them.
+std::vector<Vec3> own_vertices(std::span<const OccluderFace> body, const std::map<Key, int>& all) {
+  const std::map<Key, int> own = faces_at_vertices({body.begin(), body.end()});
+  std::vector<Vec3> vertices;
+  for (const auto& [x, count] : own) {
+    if (all.at(x) != count) return {};
+    vertices.emplace_back(x[0], x[1], x[2]);
+  }
+  return vertices;
+}
+
 // Whether the patch has more than an edge in common with the convex body, its surface included.
 bool reaches_into(const WorkPatch& patch, std::span<const OccluderFace> body) {
+  for (const OccluderFace& face : body) {
+    if (span_along(patch.outline, face.plane).low > side_tolerance) return false;
+  }
   Polygon rest = patch.outline;
   for (const OccluderFace& face : body) {
     if (rest.count + 1 >= Polygon::capacity) return true;
@@ -67,22 +93,20 @@ bool reaches_into(const WorkPatch& patch, std::span<const OccluderFace> body) {
 
 bool anything_inside(const Occluder& body, std::span<const OccluderFace> faces, const PatchMesh& mesh,
                      const WorkingFrame& frame) {
+  std::map<int, Vec3> normals;  // of the body's polygons
+  for (const OccluderFace& face : faces) normals.try_emplace(face.polygon, face.plane.normal);
   for (int p = 0; p < mesh.size(); ++p) {
     const Vec3 middle = frame(mesh.centroids[p]);
-    double radius = 0;
+    double square = 0;
     for (int k = 0; k < mesh.corner_count(p); ++k) {
-      radius = std::max(radius, (frame(mesh.vertices[mesh.corners[p][k]]) - middle).squaredNorm());
+      square = std::max(square, (frame(mesh.vertices[mesh.corners[p][k]]) - middle).squaredNorm());
     }
-    const double reach = body.radius + std::sqrt(radius) + side_tolerance;
+    const double reach = body.radius + std::sqrt(square) + side_tolerance;
     if ((middle - body.centre).squaredNorm() > reach * reach) continue;
     const WorkPatch patch = work_patch(mesh, p, frame);
-    const bool own = std::any_of(faces.begin(), faces.end(),
-                                 [&](const auto& face) { return face.polygon == mesh.polygons[p]; });
     // a second sheet back to back with a face of the body looks into it
-    const bool outward =
-        own && std::any_of(faces.begin(), faces.end(), [&](const auto& face) {
-          return face.polygon == mesh.polygons[p] && face.plane.normal.dot(patch.plane.normal) > 0.5;
-        });
+    const auto own = normals.find(mesh.polygons[p]);
+    const bool outward = own != normals.end() && own->second.dot(patch.plane.normal) > 0.5;
     if (!outward && reaches_into(patch, faces)) return true;
   }
   return false;
@@ -100,9 +124,21 @@ void bound(Occluder& occluder, std::span<const OccluderFace> faces) {
 
 }  // namespace
 
+Side side_of_plane(const Occluder& round_body, const Plane& plane) {
+  bool front = false, behind = false;
+  for (const Vec3& x : round_body.vertices) {
+    const double height = plane.distance(x);
+    front |= height > side_tolerance;
+    behind |= height < -side_tolerance;
+    if (front && behind) return Side::both;
+  }
+  return front ? Side::front : Side::behind;
+}
+
 std::vector<Occluder> join_bodies(std::vector<OccluderFace>& faces, const PatchMesh& mesh,
                                   const WorkingFrame& frame) {
   const auto left = edges_of(faces);
+  const auto at_vertices = faces_at_vertices(faces);
   std::vector<int> parent(faces.size());
   std::iota(parent.begin(), parent.end(), 0);
   std::vector<char> closed(faces.size(), 1);
@@ -132,15 +168,25 @@ std::vector<Occluder> join_bodies(std::vector<OccluderFace>& faces, const PatchM
     const int begin = static_cast<int>(ordered.size());
     for (int f : members) ordered.push_back(faces[f]);
     const int end = static_cast<int>(ordered.size());
-    Occluder body{begin, end, {}, Vec3::Zero(), 0};
+    Occluder body;
+    body.begin = begin;
+    body.end = end;
     const std::span<const OccluderFace> own(ordered.data() + begin, members.size());
     bound(body, own);
-    const bool whole = members.size() >= 4 && members.size() <= Occluder::max_faces &&
-                       std::all_of(members.begin(), members.end(), [&](int f) { return closed[f]; }) &&
-                       convex(faces, members) && !anything_inside(body, own, mesh, frame);
+    bool whole = members.size() >= 4 && members.size() <= most_faces &&
+                 std::all_of(members.begin(), members.end(), [&](int f) { return closed[f]; }) &&
+                 convex(faces, members) && !anything_inside(body, own, mesh, frame);
+    if (whole && body.round()) {
+      body.vertices = own_vertices(own, at_vertices);
+      whole = !body.vertices.empty();
+      body.inner_radius = body.radius;
+      for (const OccluderFace& face : own) {
+        body.inner_radius = std::min(body.inner_radius, -face.plane.distance(body.centre));
+      }
+    }
     if (!whole) {
       for (int f = begin; f < end; ++f) {
-        occluders.push_back({f, f + 1, {}, ordered[f].centre, ordered[f].radius});
+        occluders.push_back({f, f + 1, {}, ordered[f].centre, ordered[f].radius, 0, {}});
       }
       continue;
     }

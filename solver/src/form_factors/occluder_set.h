@@ -35,7 +35,8 @@ struct BodyEdge {
 };
 
 /// What hides as one: a single face, seen from both sides, or a closed convex body that nothing lies in or
-/// touches, so that a line of sight which meets it enters by a face that it sees from the front.
+/// touches, so that a line of sight which meets it enters by a face that it sees from the front. Bodies of
+/// more than max_faces faces are *round*: their silhouette is found for every eye by itself.
 struct Occluder {
   static constexpr int max_faces = 16;
 
@@ -43,10 +44,17 @@ struct Occluder {
   std::vector<BodyEdge> edges;  ///< of a body, each once; empty for a single face
   Vec3 centre;
   double radius = 0;
+  double inner_radius = 0;     ///< of a sphere around the centre inside a round body
+  std::vector<Vec3> vertices;  ///< of a round body
 
   bool body() const { return !edges.empty(); }
+  bool round() const { return face_count() > max_faces; }
   int face_count() const { return end - begin; }
 };
+
+/// On which side of a plane a round body lies, up to side_tolerance.
+enum class Side { front, behind, both };
+Side side_of_plane(const Occluder& round_body, const Plane& plane);
 
 /// Everything that can hide one patch from another, in working coordinates.
 struct OccluderSet {
@@ -71,7 +79,8 @@ std::vector<Polygon> convex_pieces(std::span<const Vec3> vertices,
                                    std::span<const std::array<int, 3>> triangles, const Vec3& normal);
 
 /// Joins faces that close around a convex body into one occluder each; the others stay single. A body that a
-/// patch lies in, or touches with more than an edge, is left as single faces.
+/// patch lies in, or touches with more than an edge, is left as single faces; so is a round one that shares a
+/// vertex with anything else.
 std::vector<Occluder> join_bodies(std::vector<OccluderFace>& faces, const PatchMesh& mesh,
                                   const WorkingFrame& frame);
 

@@ -89,12 +89,46 @@ bool sphere_in_shaft(const ShaftEnd& a, const ShaftEnd& b, const Vec3& centre, d
   return constant - linear * linear / (4 * square) <= 0;
 }
 
+namespace {
+
+enum class RoundBody { misses, may_hide, hides };
+
+// How a round body lies to the lines between two hulls: it hides them where its inner sphere meets each of
+// them, and none where a plane across the shortest way to them has it on its other side.
+RoundBody round_body_in_shaft(const ShaftEnd& a, const ShaftEnd& b, const Occluder& body) {
+  const Vec3 along = b.centre - a.centre;
+  const double square = along.squaredNorm();
+  const double t = square > 0 ? std::clamp((body.centre - a.centre).dot(along) / square, 0.0, 1.0) : 0.5;
+  const Vec3 aside = a.centre + t * along - body.centre;
+  const double distance = aside.norm();
+  if (distance + (1 - t) * a.radius + t * b.radius < body.inner_radius) return RoundBody::hides;
+  if (!(distance > 0)) return RoundBody::may_hide;
+  const Vec3 normal = aside / distance;
+  const Plane plane{normal, normal.dot(body.centre)};
+  const double nearest = std::min(distances(a, plane).minCoeff(), distances(b, plane).minCoeff());
+  if (nearest <= 0) return RoundBody::may_hide;
+  for (const Vec3& x : body.vertices) {
+    if (plane.distance(x) > nearest) return RoundBody::may_hide;
+  }
+  return RoundBody::misses;
+}
+
+constexpr std::uint16_t all_faces = 0xffff;
+
+}  // namespace
+
 ShaftCandidates candidates_in_shaft(const ShaftEnd& a, const ShaftEnd& b, const OccluderSet& set,
                                     const std::vector<Candidate>& inherited) {
   ShaftCandidates found;
   for (const Candidate& candidate : inherited) {
     const Occluder& occluder = set.occluders[candidate.occluder];
     if (!sphere_in_shaft(a, b, occluder.centre, occluder.radius)) continue;
+    if (occluder.round()) {
+      const RoundBody body = round_body_in_shaft(a, b, occluder);
+      if (body == RoundBody::hides) return {true, {}};
+      if (body == RoundBody::may_hide) found.list.push_back(candidate);
+      continue;
+    }
     Candidate kept{candidate.occluder, 0, 0};
     const unsigned faces = candidate.from_a | candidate.from_b;
     for (int k = 0; k < occluder.face_count(); ++k) {
@@ -116,8 +150,9 @@ ShaftCandidates candidates_in_shaft(const ShaftEnd& a, const ShaftEnd& b, const 
 std::vector<Candidate> all_candidates(const OccluderSet& set) {
   std::vector<Candidate> list;
   for (std::size_t k = 0; k < set.occluders.size(); ++k) {
-    const int faces = set.occluders[k].face_count();
-    const auto mask = static_cast<std::uint16_t>((1u << faces) - 1);
+    const Occluder& occluder = set.occluders[k];
+    const auto mask =
+        occluder.round() ? all_faces : static_cast<std::uint16_t>((1u << occluder.face_count()) - 1);
     list.push_back({static_cast<int>(k), mask, mask});
   }
   return list;

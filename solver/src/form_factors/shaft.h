@@ -40,7 +40,8 @@ bool sphere_in_shaft(const ShaftEnd& a, const ShaftEnd& b, const Vec3& centre, d
 /// An occluder that may hide something between two clusters, with those of its faces that do.
 struct Candidate {
   int occluder = 0;
-  std::uint16_t from_a = 0;  ///< faces that may be met from their front, seen from a: bit k = face begin + k
+  std::uint16_t from_a = 0;  ///< faces that may be met from their front, seen from a: bit k = face begin + k;
+                             ///< all bits for a round body
   std::uint16_t from_b = 0;
 };
 

@@ -67,11 +67,15 @@ class Run {
     const std::vector<double> raw = row_sums(factors.exchange_areas, part.areas);
     for (std::size_t k = 0; k < raw.size(); ++k) result_.row_sums[system.patches[k]] = raw[k];
     add(result_.form_factors, factors.report);
+    const double limit = most_correction * how.accuracy;
     ClosedOperator closed = close_rows(std::move(factors.exchange_areas), part.areas,
-                                       part_of(enclosures, system.patches), listener_.progress);
+                                       part_of(enclosures, system.patches), listener_.progress, limit);
     if (closed.closure.unclosed >= 0) {
       closed.closure.unclosed = system.patches[closed.closure.unclosed];
-      closed.closure.message = unclosed_message(closed.closure.unclosed);
+      closed.closure.message =
+          closed.closure.refused_correction > 0
+              ? refused_message(closed.closure.unclosed, closed.closure.refused_correction, limit)
+              : unclosed_message(closed.closure.unclosed);
     }
     add(result_.closure, closed.closure);
     return std::move(closed.transport);
@@ -190,6 +194,7 @@ class Run {
       a->rms = std::max(a->rms, b->rms);
     }
     worst.largest_correction = std::max(worst.largest_correction, part.largest_correction);
+    worst.refused_correction = std::max(worst.refused_correction, part.refused_correction);
     worst.applied |= part.applied;
     worst.iterations += part.iterations;
     if (worst.unclosed >= 0 || part.unclosed < 0) return;

@@ -6,6 +6,8 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <iomanip>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <type_traits>
@@ -77,6 +79,43 @@ double scale_entries(ExchangeMatrix& matrix, const std::vector<double>& areas, c
                                                   : scale_entries<double>(matrix, areas, d);
 }
 
+/// The largest |d_i d_j - 1| of an entry other than 0 in each enclosure.
+template <class Real>
+std::vector<double> corrections(const ExchangeMatrix& matrix, const std::vector<double>& d,
+                                const Enclosures& enclosures) {
+  std::vector<double> largest(static_cast<std::size_t>(enclosures.count));
+  for (int i = 0; i < matrix.size(); ++i) {
+    double& found = largest[enclosures.enclosure[i]];
+    const Real* row = matrix.row<Real>(i);
+    for (int j = 0; j < i; ++j) {
+      if (row[j] != 0) found = std::max(found, std::abs(d[i] * d[j] - 1));
+    }
+  }
+  return largest;
+}
+
+/// Takes enclosures whose correction is above the limit out of `active` and sets their factors to 1.
+void refuse(const ExchangeMatrix& matrix, const Enclosures& enclosures, double limit, std::vector<double>& d,
+            std::vector<char>& active, ClosureReport& report) {
+  // no entry is changed by more than the square of a factor
+  const bool none = std::all_of(d.begin(), d.end(), [&](double f) { return std::abs(f * f - 1) <= limit; });
+  if (none) return;
+  const std::vector<double> found = matrix.precision() == Precision::float32
+                                        ? corrections<float>(matrix, d, enclosures)
+                                        : corrections<double>(matrix, d, enclosures);
+  for (std::size_t i = 0; i < d.size(); ++i) {
+    const double correction = found[enclosures.enclosure[i]];
+    if (!active[i] || !(correction > limit)) continue;
+    active[i] = 0;
+    d[i] = 1;
+    if (correction > report.refused_correction) {
+      report.refused_correction = correction;
+      report.unclosed = static_cast<int>(i);
+      report.message = refused_message(report.unclosed, correction, limit);
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<double> row_sums(const ExchangeMatrix& exchange_areas, std::span<const double> areas) {
@@ -90,6 +129,15 @@ std::vector<double> row_sums(const ExchangeMatrix& exchange_areas, std::span<con
 std::string unclosed_message(int patch) {
   return "the rows of the enclosure of patch " + std::to_string(patch) +
          " cannot be closed by factors within [1/4, 4] and were left as they are";
+}
+
+std::string refused_message(int patch, double correction, double limit) {
+  std::ostringstream message;
+  message
+      << "the rows of the enclosure of patch " << patch << " would be closed by changing factors by up to "
+      << std::setprecision(2) << correction << ", above " << limit
+      << ": they were left as they are; the surfaces may cover each other or have gaps (see luxel inspect)";
+  return message.str();
 }
 
 RowSumError row_sum_error(std::span<const double> row_sums, std::span<const double> areas,
@@ -112,7 +160,7 @@ RowSumError row_sum_error(std::span<const double> row_sums, std::span<const doub
 }
 
 ClosedOperator close_rows(ExchangeMatrix exchange_areas, std::vector<double> areas,
-                          const Enclosures& enclosures, const Progress& progress) {
+                          const Enclosures& enclosures, const Progress& progress, double correction_limit) {
   const std::size_t size = exchange_areas.size();
   if (areas.size() != size || enclosures.enclosure.size() != size) {
     throw std::invalid_argument("close_rows: areas and enclosures need one entry for each patch");
@@ -130,11 +178,12 @@ ClosedOperator close_rows(ExchangeMatrix exchange_areas, std::vector<double> are
     symmetric_product(exchange_areas, x, y, 1);
   };
   std::vector<double> diagonal(size, 0.0);
-  const RowClosure closure =
+  RowClosure closure =
       close_enclosures(product, areas, enclosures.enclosure, std::move(active), closed_within, progress);
   report.iterations = closure.iterations;
   report.unclosed = closure.unclosed;
   if (closure.unclosed >= 0) report.message = unclosed_message(closure.unclosed);
+  refuse(exchange_areas, enclosures, correction_limit, closure.factors, closure.closed, report);
   if (std::find(closure.closed.begin(), closure.closed.end(), 1) != closure.closed.end()) {
     report.applied = true;
     report.largest_correction = scale_entries(exchange_areas, areas, closure.factors);

@@ -1,18 +1,17 @@
 #include "transport/hierarchical/block_assembly.h"
 
-#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
-#include "form_factors/pair.h"
 #include "form_factors/shaft.h"
 #include "stage_progress.h"
 #include "transport/hierarchical/block_end.h"
 #include "transport/hierarchical/block_rays.h"
+#include "transport/hierarchical/near_occluders.h"
+#include "transport/hierarchical/store_block.h"
 
 namespace luxel {
 
@@ -63,51 +62,10 @@ constexpr int most_rays = 256;
 // Rays that must agree where an occluder is near.
 constexpr int agreeing_rays = 256;
 
-// A side is taken for constant where that changes the irradiance by less than this share of the block's
-// error.
-constexpr double collapse_share = 0.3;
-
-// An exact pair of patches may err by this share of the block's error.
-constexpr double near_share = 0.1;
-
 // Long lists of occluders are looked through again only once the ends have shrunk to this share: bodies of
 // many facets seldom let a block go for certain, and rays decide in the end.
 constexpr std::size_t long_list = 8;
 constexpr double shrunk_enough = 0.6;
-
-// What may stand between two ends, found when their radii summed up to `reach`.
-struct Candidates {
-  std::vector<Candidate> list;
-  double reach = std::numeric_limits<double>::infinity();
-
-  bool empty() const { return list.empty(); }
-};
-
-// From a point to a convex face.
-double distance(const OccluderFace& face, const Vec3& x) {
-  const double height = face.plane.distance(x);
-  const Vec3 foot = x - height * face.plane.normal;
-  double aside = 0;  // squared, from the foot to the outline
-  for (int k = 0; k < face.outline.count; ++k) {
-    if (face.sides[k].distance(foot) >= 0) continue;
-    const Vec3 along = face.outline.next(k) - face.outline[k];
-    const double at = std::clamp((foot - face.outline[k]).dot(along) / along.squaredNorm(), 0.0, 1.0);
-    const double squared = (foot - face.outline[k] - at * along).squaredNorm();
-    aside = aside == 0 ? squared : std::min(aside, squared);
-  }
-  return std::sqrt(height * height + aside);
-}
-
-// Of what the kernel would let through.
-double visible_share(const BlockKernel& kernel, const RayCount& rays) {
-  if (rays.unanimous()) return rays.share();
-  double all = 0, visible = 0;
-  for (int k = 0; k < 16; ++k) {
-    all += kernel.values[k];
-    visible += kernel.values[k] * rays.share(k);
-  }
-  return all > 0 ? visible / all : rays.share();
-}
 
 class Assembly {
  public:
@@ -124,8 +82,9 @@ class Assembly {
 
   std::vector<BlockList> run(const Progress& progress) {
     std::vector<BlockList> lists(1);
-    std::vector<Task> tasks{{hierarchy_.root, hierarchy_.root,
-                             hiding_ ? Candidates{all_candidates(scene_.occluders)} : Candidates()}};
+    std::vector<Task> tasks{
+        {hierarchy_.root, hierarchy_.root,
+         hiding_ ? HidingCandidates{all_candidates(scene_.occluders)} : HidingCandidates()}};
     while (!tasks.empty() && tasks.size() < task_count) {
       std::vector<Task> next;
       for (const Task& task : tasks) run(task, lists[0], &next);
@@ -151,7 +110,7 @@ class Assembly {
  private:
   struct Task {
     int r, s;
-    Candidates candidates;
+    HidingCandidates candidates;
   };
 
   void run(const Task& task, BlockList& list, std::vector<Task>* deferred) const {
@@ -164,7 +123,7 @@ class Assembly {
   }
 
   // Pairs inside one cluster.
-  void within(const BlockEnd& r, const Candidates& candidates, BlockList& list,
+  void within(const BlockEnd& r, const HidingCandidates& candidates, BlockList& list,
               std::vector<Task>* deferred) const {
     if (r.bounds.planar) return;
     const PatchCluster& cluster = hierarchy_.clusters[r.cluster];
@@ -176,7 +135,7 @@ class Assembly {
     }
   }
 
-  void divide(const BlockEnd& r, const BlockEnd& s, const Candidates& candidates, BlockList& list,
+  void divide(const BlockEnd& r, const BlockEnd& s, const HidingCandidates& candidates, BlockList& list,
               std::vector<Task>* deferred) const {
     divide_end(r, s, !r.single && (s.single || r.bounds.radius >= s.bounds.radius), candidates, list,
                deferred);
@@ -189,34 +148,18 @@ class Assembly {
     return end.bounds.planar ? hierarchy_.groups[hierarchy_.group[position]].area : end.area;
   }
 
-  // Whether a face that may stand between is so near that its shadow changes across the end.
-  bool occluder_near(const BlockEnd& end, const Candidates& candidates) const {
-    const double near_enough = near_ * end.bounds.radius;
-    for (const Candidate& candidate : candidates.list) {
-      const Occluder& occluder = scene_.occluders.occluders[candidate.occluder];
-      if ((occluder.centre - end.bounds.centre).norm() > near_enough + occluder.radius) continue;
-      for (int k = 0; k < occluder.face_count(); ++k) {
-        if (!((candidate.from_a | candidate.from_b) >> k & 1)) continue;
-        if (distance(scene_.occluders.faces[occluder.begin + k], end.bounds.centre) < near_enough) {
-          return true;
-        }
-      }
-    }
-    return false;
-  }
-
   // Divides the one end that is said to be too large, or the larger of both; false if that is a single patch.
   // Horizons and near occluders change the kernel across an end alike for all parts of the other, whose
   // errors add up.
   bool divide_one(const BlockEnd& r, const BlockEnd& s, bool large_r, bool large_s,
-                  const Candidates& candidates, BlockList& list, std::vector<Task>* deferred) const {
+                  const HidingCandidates& candidates, BlockList& list, std::vector<Task>* deferred) const {
     const bool first = large_r && !r.single, second = large_s && !s.single;
     if (!first && !second) return false;
     divide_end(r, s, first && (!second || r.bounds.radius >= s.bounds.radius), candidates, list, deferred);
     return true;
   }
 
-  void divide_end(const BlockEnd& r, const BlockEnd& s, bool first, const Candidates& candidates,
+  void divide_end(const BlockEnd& r, const BlockEnd& s, bool first, const HidingCandidates& candidates,
                   BlockList& list, std::vector<Task>* deferred) const {
     const PatchCluster& cluster = hierarchy_.clusters[first ? r.cluster : s.cluster];
     for (int k = 0; k < cluster.child_count; ++k) {
@@ -231,14 +174,14 @@ class Assembly {
     }
   }
 
-  void between(const BlockEnd& r, const BlockEnd& s, const Candidates& inherited, BlockList& list,
+  void between(const BlockEnd& r, const BlockEnd& s, const HidingCandidates& inherited, BlockList& list,
                std::vector<Task>* deferred) const {
     const Span over_r = heights_over(r.bounds, s.bounds);
     if (over_r.high <= plane_tolerance) return;
     const Span over_s = heights_over(s.bounds, r.bounds);
     if (over_s.high <= plane_tolerance) return;
     const double reach = r.bounds.radius + s.bounds.radius;
-    Candidates found;
+    HidingCandidates found;
     const bool look = !inherited.empty() &&
                       (inherited.list.size() <= long_list || reach <= shrunk_enough * inherited.reach);
     if (look) {
@@ -249,7 +192,7 @@ class Assembly {
       }
       found = {std::move(in_shaft.list), reach};
     }
-    const Candidates& candidates = look ? found : inherited;
+    const HidingCandidates& candidates = look ? found : inherited;
     const bool single = r.single && s.single;
     if (!single && !(r.usable && s.usable)) {
       divide(r, s, candidates, list, deferred);
@@ -299,8 +242,8 @@ class Assembly {
         return;
       }
       const bool counts = !single && coherence * mixed_error > allowed;
-      const bool near_r = counts && occluder_near(r, candidates);
-      const bool near_s = counts && occluder_near(s, candidates);
+      const bool near_r = counts && occluder_near(scene_.occluders, candidates, r, near_);
+      const bool near_s = counts && occluder_near(scene_.occluders, candidates, s, near_);
       // a few rays that agree are no proof where much is half hidden all around
       if (near_r || near_s) {
         while (rays.unanimous() && rays.drawn < agreeing_rays) {
@@ -316,69 +259,8 @@ class Assembly {
     } else {
       ++list.unhidden;
     }
-    if (single && (ratio > near_ratio || straddling_r || straddling_s)) {
-      store_near(r, s, visible_share(kernel, rays),
-                 std::min(near_share * options_.block_error / std::max(bright_r, bright_s), near_share),
-                 list);
-    } else {
-      store(r, s, kernel, rays, bright_r, bright_s, list);
-    }
-  }
-
-  // Single patches whose nodes are too far apart for the kernel between them.
-  void store_near(const BlockEnd& r, const BlockEnd& s, double visible, double tolerance,
-                  BlockList& list) const {
-    const Polygon p = clip(r.bounds.hull, s.bounds.plane, plane_tolerance);
-    const Polygon q = clip(s.bounds.hull, r.bounds.plane, plane_tolerance);
-    if (p.count == 0 || q.count == 0) return;
-    const double exchange = contour_exchange(p, q, tolerance * std::min(r.area, s.area));
-    if (!(exchange > 0)) return;
-    ++list.entries;
-    list.scalars.push_back(
-        {r.cluster, s.cluster, static_cast<float>(visible * exchange / (r.area * s.area))});
-  }
-
-  // The kernel with what rays left of it, as simply as the allowed error admits. A single patch has one
-  // value.
-  void store(const BlockEnd& r, const BlockEnd& s, const BlockKernel& kernel, const RayCount& rays,
-             double bright_r, double bright_s, BlockList& list) const {
-    std::array<double, 16> values = kernel.values;
-    if (rays.all > 0) {
-      for (int k = 0; k < 16; ++k) values[k] *= rays.share(k);
-    }
-    std::array<double, 4> of_r{}, of_s{};
-    double mean = 0;
-    for (int a = 0; a < 4; ++a) {
-      for (int b = 0; b < 4; ++b) {
-        of_r[a] += s.weights[b] * values[4 * a + b];
-        of_s[b] += r.weights[a] * values[4 * a + b];
-      }
-    }
-    for (int a = 0; a < 4; ++a) mean += r.weights[a] * of_r[a];
-    double along_r = 0, along_s = 0;  // largest change of the kernel if a side is taken for constant
-    for (int a = 0; a < 4; ++a) {
-      for (int b = 0; b < 4; ++b) {
-        along_r = std::max(along_r, std::abs(values[4 * a + b] - of_s[b]));
-        along_s = std::max(along_s, std::abs(values[4 * a + b] - of_r[a]));
-      }
-    }
-    const double weight = std::max(s.area * bright_s, r.area * bright_r);
-    const double small = collapse_share * options_.block_error;
-    const bool constant_r = r.single || along_r * weight <= small;
-    const bool constant_s = s.single || along_s * weight <= small;
-    const auto narrow = [](const auto& wide, auto& result) {
-      for (std::size_t k = 0; k < wide.size(); ++k) result[k] = static_cast<float>(wide[k]);
-    };
-    if (constant_r && constant_s) {
-      list.scalars.push_back({r.cluster, s.cluster, static_cast<float>(mean)});
-      list.entries += r.single && s.single;
-    } else if (constant_s) {
-      narrow(of_r, list.linears.emplace_back(LinearBlock{r.cluster, s.cluster, {}}).values);
-    } else if (constant_r) {
-      narrow(of_s, list.linears.emplace_back(LinearBlock{s.cluster, r.cluster, {}}).values);
-    } else {
-      narrow(values, list.bilinears.emplace_back(BilinearBlock{r.cluster, s.cluster, {}}).values);
-    }
+    const bool near = single && (ratio > near_ratio || straddling_r || straddling_s);
+    store_block(r, s, kernel, rays, near, {options_.block_error, bright_r, bright_s}, list);
   }
 
   const PatchHierarchy& hierarchy_;

@@ -4,9 +4,9 @@
 #include <memory>
 #include <vector>
 
+#include "form_factors/occluder_scene.h"
 #include "form_factors/occluder_set.h"
 #include "luxel/progress.h"
-#include "rays/occluder_scene.h"
 #include "transport/hierarchical/block_list.h"
 #include "transport/hierarchical/brightness.h"
 #include "transport/hierarchical/patch_hierarchy.h"

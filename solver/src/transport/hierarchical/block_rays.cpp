@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "form_factors/ray_visibility.h"
 #include "sampling/owen_sobol.h"
 
 namespace luxel {
@@ -16,12 +17,6 @@ constexpr int packet = 16;
 
 // Rays start and end this far in front of their patches: as in ray_visibility.cpp.
 constexpr double surface_offset = 4e-7;
-
-// Error of N quasi-random rays in a share p, and the prior of rays that agree: measured, see
-// ray_visibility.cpp.
-constexpr double error_constant = 1.5;
-constexpr double error_order = 0.7;
-constexpr double prior = 0.15;
 
 // Powers of 1 / g, g the real root of x^5 = x + 1 (Roberts 2018).
 constexpr std::array<double, 4> recurrence{0.8566748838545029, 0.7338918566271260, 0.6287067210378087,
@@ -43,9 +38,7 @@ Vec3 point_on(const Polygon& p, double u, double v) {
 }  // namespace
 
 double RayCount::error() const {
-  if (all == 0) return 0;
-  const double p = (visible + prior) / (all + 2 * prior);
-  return error_constant * std::sqrt(p * (1 - p)) * std::pow(all, -error_order);
+  return all == 0 ? 0 : share_error(share(), all);
 }
 
 BlockRays::Point BlockRays::point(const BlockEnd& end, int node, double u, double v) const {

@@ -16,9 +16,9 @@ namespace luxel {
 namespace {
 
 // A point receives light through hundreds of blocks, the more the smaller the error that each may have, and
-// their errors have either sign: for an accuracy A each may err by block_share A^1.5. Measured; see
+// their errors have either sign: for an accuracy A each may err by A^1.5 times this. Measured; see
 // docs/decisions/0014-hierarchical.md.
-constexpr double block_share = 1.2;
+constexpr double block_share = 1;
 double block_error(double accuracy) {
   return block_share * std::pow(accuracy, 1.5);
 }
@@ -44,6 +44,13 @@ void check(const PatchMesh& mesh, const Enclosures& enclosures, const PatchField
 }
 
 using Impl = HierarchicalOperator::Impl;
+
+HidingScene hiding_scene(const PatchMesh& mesh, const WorkingFrame& frame) {
+  HidingScene scene;
+  scene.occluders = occluder_set(mesh, frame);
+  if (!scene.occluders.occluders.empty()) scene.rays = std::make_unique<OccluderScene>(scene.occluders);
+  return scene;
+}
 
 /// The operator over these blocks, not closed.
 std::unique_ptr<Impl> operator_of(const PatchHierarchy& hierarchy, std::vector<BlockList> lists) {
@@ -116,8 +123,7 @@ std::unique_ptr<HierarchicalOperator> finished(std::unique_ptr<Impl> impl, const
     impl->row_sums = patch_row_sums(*impl);
     report.after = row_sum_error(impl->row_sums, areas, enclosures);
   }
-  auto result = std::make_unique<HierarchicalOperator>(std::move(impl));
-  return result;
+  return std::make_unique<HierarchicalOperator>(std::move(impl));
 }
 
 }  // namespace
@@ -127,11 +133,7 @@ std::unique_ptr<HierarchicalOperator> hierarchical_operator(
     const PatchField& emission, const HierarchicalOptions& options, const Progress& progress) {
   check(mesh, enclosures, reflectance, emission, options);
   const PatchHierarchy hierarchy = patch_hierarchy(mesh, enclosures);
-  HidingScene scene;
-  scene.occluders = occluder_set(mesh, hierarchy.frame);
-  if (!scene.occluders.occluders.empty()) scene.rays = std::make_unique<OccluderScene>(scene.occluders);
-  int occluders = 0;
-  for (const Occluder& occluder : scene.occluders.occluders) occluders += occluder.face_count();
+  const HidingScene scene = hiding_scene(mesh, hierarchy.frame);
 
   AssemblyOptions assembly{options.accuracy, block_error(options.accuracy), options.seed};
   Brightness brightness = guessed_brightness(hierarchy, reflectance, emission);
@@ -144,7 +146,9 @@ std::unique_ptr<HierarchicalOperator> hierarchical_operator(
     brightness = solved_brightness(hierarchy, first->interpolation, first->coarse, reflectance, emission);
   }
   auto impl = operator_of(hierarchy, assemble_blocks(hierarchy, scene, brightness, assembly, progress));
-  impl->report.occluders = occluders;
+  for (const Occluder& occluder : scene.occluders.occluders) {
+    impl->report.occluders += occluder.face_count();
+  }
   return finished(std::move(impl), enclosures, progress);
 }
 
@@ -154,15 +158,13 @@ std::unique_ptr<HierarchicalOperator> hierarchical_operator(const PatchMesh& mes
                                                             const Progress& progress) {
   check(mesh, enclosures, PatchField(mesh.size(), 1), PatchField(mesh.size(), 1), options);
   const PatchHierarchy hierarchy = patch_hierarchy(mesh, enclosures);
-  HidingScene scene;
-  scene.occluders = occluder_set(mesh, hierarchy.frame);
-  if (!scene.occluders.occluders.empty()) scene.rays = std::make_unique<OccluderScene>(scene.occluders);
-  int occluders = 0;
-  for (const Occluder& occluder : scene.occluders.occluders) occluders += occluder.face_count();
+  const HidingScene scene = hiding_scene(mesh, hierarchy.frame);
   const AssemblyOptions assembly{options.accuracy, block_error(options.accuracy), options.seed};
   auto impl = operator_of(
       hierarchy, assemble_blocks(hierarchy, scene, uniform_brightness(hierarchy), assembly, progress));
-  impl->report.occluders = occluders;
+  for (const Occluder& occluder : scene.occluders.occluders) {
+    impl->report.occluders += occluder.face_count();
+  }
   return finished(std::move(impl), enclosures, progress);
 }
 

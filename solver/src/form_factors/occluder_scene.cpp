@@ -1,9 +1,6 @@
-#include "rays/occluder_scene.h"
-
-#include <embree3/rtcore.h>
+#include "form_factors/occluder_scene.h"
 
 #include <algorithm>
-#include <array>
 #include <stdexcept>
 #include <vector>
 
@@ -43,8 +40,8 @@ OccluderScene::OccluderScene(const OccluderSet& set) {
 }
 
 OccluderScene::~OccluderScene() {
-  if (scene_) rtcReleaseScene(scene_);
-  if (device_) rtcReleaseDevice(device_);
+  rtcReleaseScene(scene_);
+  rtcReleaseDevice(device_);
 }
 
 }  // namespace luxel

@@ -1,0 +1,90 @@
+#include "transport/hierarchical/store_block.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "form_factors/pair.h"
+
+namespace luxel {
+
+namespace {
+
+// A side is taken for constant where that changes the irradiance by less than this share of the block's
+// error.
+constexpr double collapse_share = 0.3;
+
+// An exact pair of patches may err by this share of the block's error.
+constexpr double near_share = 0.1;
+
+// Of what the kernel would let through.
+double visible_share(const BlockKernel& kernel, const RayCount& rays) {
+  if (rays.unanimous()) return rays.share();
+  double all = 0, visible = 0;
+  for (int k = 0; k < 16; ++k) {
+    all += kernel.values[k];
+    visible += kernel.values[k] * rays.share(k);
+  }
+  return all > 0 ? visible / all : rays.share();
+}
+
+// Single patches whose nodes are too far apart for the kernel between them.
+void store_near(const BlockEnd& r, const BlockEnd& s, double visible, double tolerance, BlockList& list) {
+  const Polygon p = clip(r.bounds.hull, s.bounds.plane, plane_tolerance);
+  const Polygon q = clip(s.bounds.hull, r.bounds.plane, plane_tolerance);
+  if (p.count == 0 || q.count == 0) return;
+  const double exchange = contour_exchange(p, q, tolerance * std::min(r.area, s.area));
+  if (!(exchange > 0)) return;
+  ++list.entries;
+  list.scalars.push_back({r.cluster, s.cluster, static_cast<float>(visible * exchange / (r.area * s.area))});
+}
+
+}  // namespace
+
+void store_block(const BlockEnd& r, const BlockEnd& s, const BlockKernel& kernel, const RayCount& rays,
+                 bool near, const BlockTolerance& tolerance, BlockList& list) {
+  if (near) {
+    const double brightest = std::max(tolerance.bright_r, tolerance.bright_s);
+    store_near(r, s, visible_share(kernel, rays), near_share * std::min(tolerance.error / brightest, 1.0),
+               list);
+    return;
+  }
+  std::array<double, 16> values = kernel.values;
+  if (rays.all > 0) {
+    for (int k = 0; k < 16; ++k) values[k] *= rays.share(k);
+  }
+  std::array<double, 4> of_r{}, of_s{};
+  double mean = 0;
+  for (int a = 0; a < 4; ++a) {
+    for (int b = 0; b < 4; ++b) {
+      of_r[a] += s.weights[b] * values[4 * a + b];
+      of_s[b] += r.weights[a] * values[4 * a + b];
+    }
+  }
+  for (int a = 0; a < 4; ++a) mean += r.weights[a] * of_r[a];
+  double along_r = 0, along_s = 0;  // largest change of the kernel if a side is taken for constant
+  for (int a = 0; a < 4; ++a) {
+    for (int b = 0; b < 4; ++b) {
+      along_r = std::max(along_r, std::abs(values[4 * a + b] - of_s[b]));
+      along_s = std::max(along_s, std::abs(values[4 * a + b] - of_r[a]));
+    }
+  }
+  const double weight = std::max(s.area * tolerance.bright_s, r.area * tolerance.bright_r);
+  const double small = collapse_share * tolerance.error;
+  const bool constant_r = r.single || along_r * weight <= small;
+  const bool constant_s = s.single || along_s * weight <= small;
+  const auto narrow = [](const auto& wide, auto& result) {
+    for (std::size_t k = 0; k < wide.size(); ++k) result[k] = static_cast<float>(wide[k]);
+  };
+  if (constant_r && constant_s) {
+    list.scalars.push_back({r.cluster, s.cluster, static_cast<float>(mean)});
+    list.entries += r.single && s.single;
+  } else if (constant_s) {
+    narrow(of_r, list.linears.emplace_back(LinearBlock{r.cluster, s.cluster, {}}).values);
+  } else if (constant_r) {
+    narrow(of_s, list.linears.emplace_back(LinearBlock{s.cluster, r.cluster, {}}).values);
+  } else {
+    narrow(values, list.bilinears.emplace_back(BilinearBlock{r.cluster, s.cluster, {}}).values);
+  }
+}
+
+}  // namespace luxel
