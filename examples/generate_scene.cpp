@@ -5,6 +5,8 @@
 //   K) generate_scene boxes COUNT K M      the cube with COUNT rotated boxes (2, 8 or 27) floating on a grid
 //   generate_scene street HOUSES K M    an open street: ground K x K, HOUSES boxes standing on it, M x M
 //   quads a side generate_scene torus K              a torus in an inward sphere, about K triangles each
+//   generate_scene ball K               a rough ball seen from inside, about K triangles, no two in one
+//                                       plane, and a square lamp (group lamp) under its top
 //   generate_scene blocks K             a closed unit room with two turned blocks and a lamp in the ceiling,
 //                                       K x K quads a side, K a multiple of 8; about 7.4 K^2 quads
 //   generate_scene finishes FILE        the scene file (JSON) that gives the blocks of FILE their finishes
@@ -94,19 +96,21 @@ class ObjWriter {
     }
   }
 
-  // A sphere seen from inside: latitude rings between two poles.
-  void inward_sphere(double radius, int n, int m) {
+  // A sphere seen from inside: latitude rings between two poles; radius(theta) is asked for each vertex but
+  // these.
+  template <class Radius>
+  void inward_sphere(int n, int m, const Radius& radius) {
     const int north = vertices_ + 1;
-    vertex({0, 0, radius});
+    vertex({0, 0, 1});
     for (int j = 1; j < m; ++j) {
       const double theta = std::numbers::pi * j / m;
       for (int i = 0; i < n; ++i) {
         const double phi = 2 * std::numbers::pi * i / n;
-        vertex(radius *
+        vertex(radius(theta) *
                Point{std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)});
       }
     }
-    vertex({0, 0, -radius});
+    vertex({0, 0, -1});
     const int south = vertices_;
     const auto at = [&](int i, int j) { return north + 1 + (j - 1) * n + i % n; };
     for (int i = 0; i < n; ++i) std::printf("f %d %d %d\n", north, at(i + 1, 1), at(i, 1));
@@ -224,7 +228,7 @@ void write_torus(ObjWriter& obj, int triangles) {
   const double pi = std::numbers::pi;
   const int m = static_cast<int>(std::lround(std::sqrt(triangles / 4.0)));
   obj.begin_group("sphere");
-  obj.inward_sphere(1, 2 * m, m);
+  obj.inward_sphere(2 * m, m, [](double) { return 1.0; });
   obj.begin_group("torus");
   obj.periodic(
       [&](double s, double t) {
@@ -232,6 +236,20 @@ void write_torus(ObjWriter& obj, int triangles) {
         return Point{ring * std::cos(2 * pi * s), ring * std::sin(2 * pi * s), 0.2 * std::sin(2 * pi * t)};
       },
       2 * m, m);
+}
+
+// Radii are moved at random by so much of a triangle's height that the normals of neighbours are some 30
+// degrees apart.
+void write_ball(ObjWriter& obj, int triangles) {
+  const double pi = std::numbers::pi, roughness = 0.2;
+  const int m = std::max(3, static_cast<int>(std::lround(std::sqrt(triangles / 4.0))));
+  std::mt19937 random(5);
+  obj.begin_group("ball");
+  obj.inward_sphere(2 * m, m, [&](double theta) {
+    return 1 + roughness * pi / m * std::sin(theta) * (2 * (random() / 4294967296.0) - 1);
+  });
+  obj.begin_group("lamp");
+  obj.grid({-0.2, 0.2, 0.8}, {0.4, 0, 0}, {0, -0.4, 0}, 1, 1);
 }
 
 }  // namespace
@@ -245,9 +263,9 @@ int main(int count, char** arguments) {
   }
   if (count < 3 || number(2, 0) < 1 || (kind == "blocks" && number(2, 0) % 8 != 0)) {
     std::fputs(
-        "usage: generate_scene cube K | room K [M] | boxes COUNT K M | street HOUSES K M | torus K | blocks "
-        "K "
-        "(a multiple of 8) | finishes FILE\n",
+        "usage: generate_scene cube K | room K [M] | boxes COUNT K M | street HOUSES K M | torus K | ball K "
+        "| "
+        "blocks K (a multiple of 8) | finishes FILE\n",
         stderr);
     return 2;
   }
@@ -267,6 +285,8 @@ int main(int count, char** arguments) {
     write_street(obj, k, number(3, 40), number(4, 10));
   } else if (kind == "torus") {
     write_torus(obj, k);
+  } else if (kind == "ball") {
+    write_ball(obj, k);
   } else if (kind == "blocks") {
     write_blocks(obj, k);
   } else {

@@ -149,6 +149,7 @@ Assembly assemble(const SceneOptions& scene, const OperatorOptions& options, con
 
 bool accuracy_reached(const Assembly& assembly, bool largest_too) {
   const double accuracy = assembly.record.options.accuracy;
+  if (assembly.operator_error && assembly.operator_error->low > accuracy) return false;
   if (assembly.record.closure.unclosed >= 0) return false;
   return assembly.rows.certain_rms <= accuracy && (!largest_too || assembly.rows.certain_max <= 2 * accuracy);
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "commands.h"
+#include "luxel/operator_error.h"
 #include "luxel/operator_file.h"
 #include "luxel/report.h"
 #include "usage.h"
@@ -26,7 +27,8 @@ struct Assembly {
   PatchMesh mesh;
   std::unique_ptr<DenseOperator> transport;
   OperatorRecord record;  ///< how the operator came about, in this run or in the one that saved it
-  RowErrors rows;         ///< before any correction; of_patch is empty for an operator that was loaded
+  RowErrors rows;         ///< before any correction; of_patch is empty where it was loaded or gathered
+  std::optional<OperatorError> operator_error;  ///< where it was estimated
 };
 
 /// The first half of the road: reads the scene, cuts it into patches, computes their form factors and closes
@@ -45,8 +47,8 @@ RowErrors row_errors(const std::vector<double>& row_sums, const std::vector<doub
 void report_operator(const Assembly& assembly, std::string_view kind, std::size_t bytes,
                      const Seconds& seconds, Report& report);
 
-/// Whether the raw rows are as accurate as asked, as far as the shares measured by rays can tell: RMS <=
-/// accuracy, and in `factors` the largest <= 2 accuracy.
+/// Whether the operator is as accurate as asked, as far as rays can tell: the low end of its error's interval
+/// and the RMS error of the raw rows <= accuracy, and in `factors` the largest <= 2 accuracy.
 bool accuracy_reached(const Assembly& assembly, bool largest_too);
 
 /// Reads and meshes only; fills in report.scene (but for closed and enclosures) and patches.

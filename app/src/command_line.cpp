@@ -9,6 +9,7 @@
 #include "command_options.h"
 #include "help_text.h"
 #include "luxel/input_error.h"
+#include "operator_use.h"
 #include "suggestion.h"
 #include "version.h"
 
@@ -77,6 +78,20 @@ void check_operator(const CLI::App& app, const OperatorOptions& options) {
   }
 }
 
+// Commands that need every entry.
+void check_dense(const CLI::App& app, const OperatorOptions& options) {
+  if (options.kind == OperatorKind::automatic || options.kind == OperatorKind::dense) return;
+  throw InputError(fmt::format("{}: found --operator {}, expected dense: it needs every form factor",
+                               app.get_name(), name(options.kind)));
+}
+
+// What operators without entries have no use for.
+void check_use(const SolveCommand& command) {
+  const std::string reason = operator_cannot(command.transport.kind, command);
+  if (reason.empty()) return;
+  throw InputError(fmt::format("solve: found --operator {} with {}", name(command.transport.kind), reason));
+}
+
 void check_bounces(const SolveOptions& options) {
   if (!options.bounces || options.method == Method::automatic || options.method == Method::neumann) return;
   throw InputError(
@@ -104,7 +119,9 @@ Command parse_command_line(int argc, const char* const* argv) {
               "Write this file, by its extension .vtp .vtu .pvd .csv .json .ply .png .exr or .hdr; may be "
               "given again");
   add_full_precision(*solve_app, solve.full_precision);
+  add_keep_partial(*solve_app, solve.keep_partial);
   add_operator(*solve_app, solve.transport);
+  add_error_bar(*solve_app, solve.error_bar);
   add_solver(*solve_app, solve.solve);
   add_plan(*solve_app, solve.savings);
   add_general(*solve_app, solve.general);
@@ -168,11 +185,13 @@ Command parse_command_line(int argc, const char* const* argv) {
     check_scene(*solve_app, solve.scene);
     check_operator(*solve_app, solve.transport);
     check_bounces(solve.solve);
+    check_use(solve);
     return solve;
   }
   if (*factors_app) {
     check_scene(*factors_app, factors.scene);
     check_operator(*factors_app, factors.transport);
+    check_dense(*factors_app, factors.transport);
     return factors;
   }
   if (*inspect_app) {
@@ -182,6 +201,7 @@ Command parse_command_line(int argc, const char* const* argv) {
   if (*compare_app) {
     check_scene(*compare_app, compare.scene);
     check_operator(*compare_app, compare.transport);
+    check_dense(*compare_app, compare.transport);
     return compare;
   }
   if (*stress_app) {

@@ -127,9 +127,16 @@ void add_operator(CLI::App& app, OperatorOptions& chosen) {
         return text == "auto" || text == "rays" || text == "exact";
       })
       ->group(transport);
-  value_option(app, "--operator", "KIND", "auto or dense (no other operator is built)",
-               "How the form factors are kept: auto or dense; default: auto",
-               [](const std::string& text) { return text == "auto" || text == "dense"; })
+  value_option(app, "--operator", "KIND", "auto, dense, gather or hierarchical",
+               "How light is exchanged: dense, every pair of patches; gather, rays from each patch; "
+               "hierarchical, pairs of "
+               "clusters (the last two in solve only); auto, what the scene, the accuracy and the memory "
+               "call for; default: auto",
+               [&chosen](const std::string& text) {
+                 const auto kind = operator_from_name(text);
+                 if (kind) chosen.kind = *kind;
+                 return kind.has_value();
+               })
       ->group(transport);
   count_option(app, "--seed", "N", 0, UINT64_MAX, "a whole number", "Seed of the random streams; default: 1",
                [&options](std::uint64_t n) { options.seed = n; })
@@ -227,6 +234,28 @@ void add_plan(CLI::App& app, Savings& savings) {
                  return text == "auto" || text == "full";
                })
       ->group(solving);
+}
+
+void add_error_bar(CLI::App& app, bool& error_bar) {
+  value_option(
+      app, "--error-bar", "HOW", "on or off",
+      "Estimate the error of the operator by rays from some patches, for at most a fifth of the run: on "
+      "or off; default: on",
+      [&error_bar](const std::string& text) {
+        error_bar = text == "on";
+        return text == "on" || text == "off";
+      })
+      ->group(transport);
+}
+
+void add_keep_partial(CLI::App& app, bool& keep_partial) {
+  app.add_flag(
+         "--keep-partial", keep_partial,
+         wrapped(
+             "After Ctrl-C, once there is light at all, write what is solved so far, as FILE.partial.EXT; "
+             "else nothing is written",
+             description_width))
+      ->group(output);
 }
 
 void add_outputs(CLI::App& app, std::vector<std::string>& outputs, const char* description) {

@@ -19,6 +19,8 @@ void add_general(CLI::App& app, GeneralOptions& general);
 void add_scene(CLI::App& app, SceneOptions& scene);
 void add_operator(CLI::App& app, OperatorOptions& chosen);
 void add_solver(CLI::App& app, SolveOptions& options);
+void add_error_bar(CLI::App& app, bool& error_bar);
+void add_keep_partial(CLI::App& app, bool& keep_partial);
 void add_plan(CLI::App& app, Savings& savings);
 void add_methods(CLI::App& app, std::vector<Method>& methods);
 void add_comparison(CLI::App& app, CompareCommand& compare);

@@ -32,6 +32,7 @@ struct SceneOptions {
 
 /// How the transport operator comes about.
 struct OperatorOptions {
+  OperatorKind kind = OperatorKind::automatic;
   FormFactorOptions form_factors;
   bool accuracy_given = false;  ///< form_factors.accuracy was typed, not the default
   bool raw = false;             ///< rows are left as computed
@@ -46,6 +47,8 @@ struct SolveCommand {
   OperatorOptions transport;
   SolveOptions solve;
   Savings savings;
+  bool error_bar = true;      ///< estimate the operator's error
+  bool keep_partial = false;  ///< what is solved when Ctrl-C comes is written, and says so
   std::vector<std::string> outputs;
   bool full_precision = false;
 };

@@ -15,6 +15,9 @@ std::size_t mesh_bytes(int patches);
 /// at its peak, about [bytes].
 std::size_t solve_bytes(int patches, Precision precision, std::optional<Method> method);
 
+/// What --memory allows, or where it was not given (0) what the machine has [bytes].
+std::size_t memory_limit(std::size_t limit);
+
 /// @param limit  bytes that may be taken; 0: what the machine has
 /// @throws InputError with the estimate where it is above the limit
 void check_memory(std::size_t estimate, std::size_t limit, int patches);

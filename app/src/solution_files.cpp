@@ -37,6 +37,15 @@ void SolutionFiles::add_step(const Iteration& iteration) {
   for (const auto& series : series_) series->add(iteration.number, *iteration.radiosity, vertex_radiosity);
 }
 
+std::vector<std::string> SolutionFiles::names(const Report& report) const {
+  std::vector<std::string> names = command_.outputs;
+  for (std::string& file : names) {
+    const std::size_t extension = extension_of(file).size();
+    if (report.partial && extension_of(file) != ".pvd") file.insert(file.size() - extension, ".partial");
+  }
+  return names;
+}
+
 void SolutionFiles::write(const RadiositySolution& solution, const Report& report, const Progress& progress) {
   const PatchMesh& mesh = assembly_.mesh;
   PatchField vertex_radiosity;
@@ -48,8 +57,9 @@ void SolutionFiles::write(const RadiositySolution& solution, const Report& repor
     view = render_view(mesh, gouraud_, vertex_radiosity, view_camera(mesh), {}, progress);
   }
   double done = 0;
-  for (const std::string& file : command_.outputs) {
-    if (!progress("writing", done++, static_cast<double>(command_.outputs.size()))) throw Cancelled();
+  for (const std::string& file : names(report)) {
+    if (progress && !progress("writing", done++, static_cast<double>(command_.outputs.size())))
+      throw Cancelled();
     const std::string extension = extension_of(file);
     if (extension == ".csv") {
       write_csv(file, mesh, solution, {.full_precision = command_.full_precision});
@@ -66,7 +76,7 @@ void SolutionFiles::write(const RadiositySolution& solution, const Report& repor
 }
 
 void SolutionFiles::write_report(const Report& report) const {
-  for (const std::string& file : command_.outputs) {
+  for (const std::string& file : names(report)) {
     if (extension_of(file) == ".json") write_file(file, to_json(report));
   }
 }

@@ -26,6 +26,10 @@ class SolutionFiles {
   /// One more step for every time series.
   void add_step(const Iteration& iteration);
 
+  /// The files asked for, as they are called: of a partial report with ".partial" before the extension, time
+  /// series as they are.
+  std::vector<std::string> names(const Report& report) const;
+
   /// Writes all but the time series and the report.
   /// @throws InputError naming the file that could not be written; Cancelled before the next file
   void write(const RadiositySolution& solution, const Report& report, const Progress& progress);

@@ -1,3 +1,5 @@
+#include <cstdio>
+
 #include "assembly.h"
 #include "interruption.h"
 #include "luxel/input_error.h"
@@ -39,17 +41,23 @@ ExitStatus run(const SolveCommand& command) {
     return bar("solving", iteration.number, last);
   });
   const RadiositySolution solution = planned.run(assembly, progress, report);
-  if (interruption_requested()) throw Cancelled();
+  report.partial = interruption_requested();
+  if (report.partial && !command.keep_partial) throw Cancelled();
   if (solution.radiosity.maxCoeff() > 0 && solution.irradiance.maxCoeff() == 0) {
     report.scene.warnings.push_back(
         "light arrives nowhere: no patch faces one that shines; are the faces turned inside out?");
   }
 
   add_run_figures(report, watch);
-  files.write(solution, report, progress);
+  // a wish to stop has been heard: now it is written
+  files.write(solution, report, report.partial ? Progress() : progress);
   add_run_figures(report, watch);
   files.write_report(report);
-  show(report, command.general, command.outputs);
+  show(report, command.general, files.names(report));
+  if (report.partial) {
+    std::fputs("luxel: stopped; what was solved so far is marked as partial\n", stderr);
+    return interrupted;
+  }
 
   const bool solved = solution.report.converged || solution.report.stopped == Stopped::bounces;
   return solved && accuracy_reached(assembly, false) ? done : not_reached;

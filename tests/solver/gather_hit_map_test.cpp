@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <random>
 #include <vector>
 
@@ -49,6 +50,49 @@ TEST(HitMap, TellsTheSidesOfASheetApart) {
 
   EXPECT_EQ(map.at(0, true, 0.2f, 0.2f), 0);
   EXPECT_EQ(map.at(0, false, 0.2f, 0.2f), 1);
+}
+
+TEST(HitMap, GivesPatchesTheirShareOfTheTexels) {
+  // 7 x 7 squares in a picture of 28 x 1.2 texels a side: edges at every place between two texels
+  const PatchMesh mesh = cut_faces(Boxes().add({0, 0, 0}, {1, 1, 1}, true), 7);
+  const HitMap map(mesh, 23);
+
+  std::vector<double> share(mesh.size(), 0.0);
+  for (const int patch : map.texels()) share[patch] += 1;
+
+  const double mean = static_cast<double>(map.texels().size()) / mesh.size();
+  double squares = 0;
+  for (const double x : share) squares += std::pow(x / mean - 1, 2) / mesh.size();
+  // texels that take the patch at their centre are 4 or 5 a side: off by 0.15
+  EXPECT_LT(std::sqrt(squares), 0.05);
+}
+
+TEST(HitMap, AsksAlongTheFootOfABodyThatStandsOnAPolygon) {
+  // a floor of four squares; on the edge between two of them stands a wall
+  const std::vector<Vec3> corners{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 1, 0},
+                                  {1, 1, 0}, {2, 1, 0}, {1, 0, 1}, {1, 1, 1}};
+  PatchMesh mesh = hand_made_mesh(corners, {{0, 1, 4, 3}, {1, 2, 5, 4}, {1, 4, 7, 6}});
+  for (int t = 0; t < static_cast<int>(mesh.occluders.triangles.size()); ++t) {
+    if (mesh.occluders.polygons[t] == 1) mesh.occluders.polygons[t] = 0;
+  }
+  mesh.polygons[1] = 0;
+  const HitMap map(mesh);
+
+  const PatchLocator locator(mesh);
+  for (int t = 0; t < static_cast<int>(mesh.occluders.triangles.size()); ++t) {
+    if (mesh.occluders.polygons[t] != 0) continue;
+    const auto& [a, b, c] = mesh.occluders.triangles[t];
+    for (const double u : {0.05, 0.3, 0.45, 0.6}) {
+      for (const double v : {0.05, 0.2, 0.35}) {
+        const Vec3 point = corners[a] + u * (corners[b] - corners[a]) + v * (corners[c] - corners[a]);
+        const int patch = map.at(t, true, static_cast<float>(u), static_cast<float>(v));
+        if (patch != HitMap::ask) {
+          EXPECT_EQ(patch, locator.patch_at(t, true, point)) << point.transpose();
+        }
+      }
+    }
+  }
+  EXPECT_GT(std::count(map.texels().begin(), map.texels().end(), HitMap::ask), 0);
 }
 
 TEST(PacketsOf, HoldEachPatchOnce) {

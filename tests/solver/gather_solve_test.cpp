@@ -37,8 +37,6 @@ TEST(SolveGathered, IsExactInAFurnace) {
   for (double reflectance : {0.5, 0.9}) {
     GatherOptions options;
     options.rays = 64;
-    // the tolerance is a hundredth of the accuracy
-    options.accuracy = 1e-9;
 
     const GatheredSolution solution =
         gathered(mesh, reflectance, PatchField::Ones(mesh.size(), 1), options, 1e-12);

@@ -44,6 +44,15 @@ struct Report {
     double reciprocity_error = not_known;
     std::string correction = "none";  ///< its kind
     double largest_correction = 0;    ///< largest |factor - 1| that an entry was multiplied by
+
+    /// What each operator would have cost, foretold.
+    struct Candidate {
+      std::string kind;
+      double cpu_seconds = 0;
+      std::uint64_t bytes = 0;
+      bool fits = true;  ///< into the memory that may be taken
+    };
+    std::vector<Candidate> candidates;  ///< empty: the operator was asked for by name
   };
 
   struct HistoryEntry {
@@ -90,6 +99,7 @@ struct Report {
 
   /// What solving the scene will take, foretold.
   struct Estimate {
+    std::string kind;  ///< of the operator that would be chosen
     double cpu_seconds = 0;
     std::uint64_t bytes = 0;  ///< at the peak, the program itself included
   };
@@ -122,6 +132,7 @@ struct Report {
   std::optional<GroupFactors> group_factors;
   std::optional<PointFactors> point_factors;  ///< "point" in JSON
   std::vector<LeftOut> left_out;
+  bool partial = false;  ///< stopped before it was solved: what was written is what was there
   std::optional<Estimate> estimate;
   double cpu_seconds = 0;  ///< user + system of the process
   double wall_seconds = 0;

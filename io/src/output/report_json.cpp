@@ -34,7 +34,7 @@ Json json(const Report::Scene& scene) {
 }
 
 Json json(const Report::Operator& transport) {
-  return {
+  Json result = {
       {"kind", transport.kind},
       {"accuracy", number(transport.accuracy)},
       {"bytes", transport.bytes},
@@ -45,6 +45,16 @@ Json json(const Report::Operator& transport) {
        {{"max", number(transport.row_sum_error_max)}, {"rms", number(transport.row_sum_error_rms)}}},
       {"reciprocity_error", number(transport.reciprocity_error)},
       {"correction", {{"kind", transport.correction}, {"largest", number(transport.largest_correction)}}}};
+  if (transport.candidates.empty()) return result;
+  Json candidates = Json::array();
+  for (const Report::Operator::Candidate& each : transport.candidates) {
+    candidates.push_back({{"kind", each.kind},
+                          {"cpu_seconds", number(each.cpu_seconds)},
+                          {"bytes", each.bytes},
+                          {"fits", each.fits}});
+  }
+  result["candidates"] = std::move(candidates);
+  return result;
 }
 
 Json json(const Report::Solver& solver) {
@@ -138,8 +148,10 @@ std::string to_json(const Report& report) {
   for (const Report::LeftOut& item : report.left_out) {
     document["left_out"].push_back({{"what", item.what}, {"why", item.why}, {"saved", item.saved}});
   }
+  if (report.partial) document["partial"] = true;
   if (report.estimate) {
-    document["estimate"] = {{"cpu_seconds", number(report.estimate->cpu_seconds)},
+    document["estimate"] = {{"operator", report.estimate->kind},
+                            {"cpu_seconds", number(report.estimate->cpu_seconds)},
                             {"bytes", report.estimate->bytes}};
   }
   document["cpu_seconds"] = number(report.cpu_seconds);

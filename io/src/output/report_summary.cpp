@@ -71,6 +71,13 @@ void add(Table& table, const Report::Operator& transport) {
     text += "; corrected by " + transport.correction + ", at most " + number(transport.largest_correction);
   }
   table.line("row sums", text);
+  if (transport.candidates.empty()) return;
+  text.clear();
+  for (const Report::Operator::Candidate& each : transport.candidates) {
+    text += (text.empty() ? "" : "; ") + each.kind + " about " + number(each.cpu_seconds, "%.2g") +
+            " CPU s, " + bytes(each.bytes) + (each.fits ? "" : ": does not fit");
+  }
+  table.line("chosen of", text);
 }
 
 void add(Table& table, const Report::Solver& solver) {
@@ -109,6 +116,7 @@ std::string summary(const Report& report) {
                      count(scene.materials, "material") + ", " + number(scene.area, "%.6g") + " m2, " +
                      (scene.closed ? "closed" : "open") + ", " + count(scene.enclosures, "enclosure"));
   table.line("patches", count(report.patches));
+  if (report.partial) table.line("PARTIAL", "stopped before it was solved; files hold what was there");
   if (report.transport) add(table, *report.transport);
   if (report.solver) add(table, *report.solver);
   if (report.energy) add(table, *report.energy);
@@ -118,8 +126,8 @@ std::string summary(const Report& report) {
                item.what + ": " + item.why + (item.saved.empty() ? "" : " (saved " + item.saved + ")"));
   }
   if (report.estimate) {
-    table.line("to solve", "about " + number(report.estimate->cpu_seconds, "%.2g") + " CPU s, " +
-                               bytes(report.estimate->bytes));
+    table.line("to solve", report.estimate->kind + ", about " + number(report.estimate->cpu_seconds, "%.2g") +
+                               " CPU s, " + bytes(report.estimate->bytes));
   }
   table.line("run", seconds(report.wall_seconds, report.cpu_seconds) + ", " +
                         count(report.run.threads, "thread") + ", peak memory " + bytes(report.peak_bytes));

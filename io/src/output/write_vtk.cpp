@@ -95,6 +95,7 @@ void add_report(std::vector<VtkArray>& fields, const Report& report) {
     fields.push_back({name, std::vector<double>(values.begin(), values.end()), 3, "W"});
   };
   add_text("luxel_version", report.run.version);
+  if (report.partial) add("partial", 1);
   add_text("scene", report.scene.file);
   add("area", report.scene.area, "m^2");
   add("closed", report.scene.closed);
@@ -116,6 +117,11 @@ void add_report(std::vector<VtkArray>& fields, const Report& report) {
     add_channels("absorbed", report.energy->absorbed);
     add_channels("escaped", report.energy->escaped);
     add("imbalance", report.energy->imbalance);
+  }
+  if (report.error) {
+    add("operator_error", report.error->operator_estimate);
+    add("operator_error_low", report.error->operator_low);
+    add("operator_error_high", report.error->operator_high);
   }
 }
 

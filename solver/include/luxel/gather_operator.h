@@ -20,11 +20,14 @@ namespace luxel {
 
 /// How the irradiance is gathered by rays. The door for most users is solve_gathered().
 struct GatherOptions {
-  double accuracy = 0.01;  ///< asked relative RMS error of single patches' irradiance, in (0, 1); sets `rays`
+  /// asked relative RMS error of single patches' irradiance, in (0, 1); sets the rays: from a usual law,
+  /// then, in solve_gathered(), from the noise that a sample of packets shows
+  double accuracy = 0.01;
   std::optional<int> rays = {};  ///< rays from each patch, >= 16; overrides `accuracy`
   std::optional<int> stored_rays =
       {};  ///< of these kept to iterate on, >= 16; by default a quarter, see gather_plan
   std::optional<int> shadow_rays = {};  ///< from a patch to a lamp that it sees in part, >= 16
+  bool keep_partial = false;            ///< see GatherReport::partial
   bool fit = true;                      ///< smooth the noise between neighbours on one plane where they agree
   std::uint64_t seed = 0;               ///< another seed, another sample of the same error
 };
@@ -44,7 +47,7 @@ GatherPlan gather_plan(const PatchMesh& mesh, const PatchField& emission, const 
 
 /// F by quasi-random rays: row i holds the shares of patch i's rays that met each patch. Rows are exactly 1
 /// where no ray is lost (always in closed enclosures); a ray that escapes or meets a back brings nothing. Not
-/// symmetric: reciprocity holds within the sampling error. Error of F X: about 0.45 rays^-0.67 of a smooth
+/// symmetric: reciprocity holds within the sampling error. Error of F X: about 0.5 rays^-0.67 of a smooth
 /// X's variation; see docs/decisions/0010-gather.md.
 class GatherOperator : public TransportOperator {
  public:
@@ -111,6 +114,10 @@ struct GatherReport {
   std::int64_t asked_twice = 0;  ///< rays that float left in doubt, settled in double precision
   int partly_lit = 0;            ///< patches in or next to a penumbra
   double smoothed = 0;           ///< mean share by which the packets followed their fit, in [0, 1]
+  /// Stopped by on_iteration, or (with keep_partial, instead of Cancelled) by progress after the iteration:
+  /// the light is that of the stored rays alone.
+  bool partial = false;
+  std::size_t bytes = 0;  ///< held for the rays: those kept, and the map from hits to patches
 };
 
 /// Radiosity and irradiance with how they were gathered; `light.report` is that of the iteration on the
@@ -118,6 +125,7 @@ struct GatherReport {
 struct GatheredSolution {
   RadiositySolution light;
   PatchField direct;  ///< N x m: the irradiance straight from the emitters; empty where it was not apart
+  std::vector<double> row_sums;  ///< N: share of all rays of each patch that met a patch
   GatherReport report;
 };
 
@@ -126,8 +134,8 @@ struct GatheredSolution {
 /// much of the surface they are met by the rays instead. The same input and seed give the same bits for any
 /// number of threads.
 /// Cost: 30 to 50 ns of CPU a ray on merged polygons, about 1 us on a million rough triangles.
-/// @param solving     method, bounces and callbacks of the iteration on U; its tolerance is raised to a
-/// hundredth of the accuracy, since less is lost in the sampling
+/// @param solving  method, tolerance and callbacks of the iteration on the stored rays; residuals are
+/// relative to the emission, and an upper bound in the history where channels differ; no bounces
 /// @throws SingularSystem; std::invalid_argument; Cancelled
 GatheredSolution solve_gathered(const PatchMesh& mesh, const RayScene& occluders,
                                 const PatchField& reflectance, const PatchField& emission,

@@ -4,16 +4,32 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "luxel/dense_operator.h"
 #include "luxel/enclosures.h"
 #include "luxel/form_factors.h"
+#include "luxel/gather_operator.h"
+#include "luxel/hierarchical_operator.h"
+#include "luxel/operator_error.h"
 #include "luxel/patch_mesh.h"
 #include "luxel/progress.h"
 #include "luxel/solve.h"
 
 namespace luxel {
+
+/// How light is exchanged.
+enum class OperatorKind {
+  automatic,    ///< see choose_operator()
+  dense,        ///< every pair of patches
+  gather,       ///< rays from each patch
+  hierarchical  ///< pairs of clusters of patches
+};
+
+/// "auto", "dense", "gather" or "hierarchical".
+std::string_view name(OperatorKind kind);
+std::optional<OperatorKind> operator_from_name(std::string_view name);
 
 /// What may be left out. Each can be switched off alone; the result is the same to the accuracy asked for.
 struct Savings {
@@ -36,6 +52,11 @@ struct PlanOptions {
   bool together = false;
   /// One system of all patches, for an operator that is kept or was loaded.
   bool everything = false;
+  /// Estimate the operator's error besides, at most an eighth more rays or time; not with counted bounces.
+  bool error_bar = false;
+  /// Of a gather that progress cancels after its iteration, give the light of the rays at hand; see
+  /// GatherReport.
+  bool keep_partial = false;
 };
 
 /// One thing that is left out, in words for a report.
@@ -120,7 +141,38 @@ double planned_bytes(const Plan& plan);
 Cost estimated_cost(const Plan& plan, const PatchMesh& mesh, const Enclosures& enclosures,
                     const PlanOptions& options = {});
 
-enum class PlanStage { assembling, solving, done };
+/// What following a plan for gathering will cost: accuracy and seed as of form_factors. Memory is that of the
+/// program, the mesh, the fields and the rays that are kept.
+Cost estimated_gather_cost(const PatchMesh& mesh, const PlanOptions& options = {});
+
+/// The best accuracy that gather and hierarchical can be asked for: below it, what patches' edges are moved
+/// by in the one, and the blocks' rules in the other, would count.
+inline constexpr double finest_sampled = 1e-4;
+
+/// What an operator would cost.
+struct OperatorEstimate {
+  OperatorKind kind = OperatorKind::dense;
+  Cost cost;
+  bool fits = true;  ///< into the memory
+};
+
+/// The operator for a scene, with what each would cost.
+struct OperatorChoice {
+  OperatorKind kind = OperatorKind::dense;
+  std::vector<OperatorEstimate> estimates;
+};
+
+/// Chooses for the scene, accuracy, channels and memory at hand: dense where it takes a few seconds, or not
+/// much longer than the others, since it is symmetric, serves every light and has entries; else the fastest
+/// that fits. Where none fits, the smallest. Looks at geometry and finishes only, without a ray; at most a
+/// tenth of a second up to 10,000 patches.
+/// @param most_bytes  memory that may be taken
+OperatorChoice choose_operator(const PatchMesh& mesh, const PlanOptions& options, double most_bytes);
+
+/// The same of the hierarchical operator.
+Cost estimated_hierarchical_cost(const PatchMesh& mesh, const PlanOptions& options = {});
+
+enum class PlanStage { assembling, solving, measuring, done };
 
 /// Who follows a plan from outside; both may be empty.
 struct PlanListener {
@@ -138,6 +190,11 @@ struct PlannedSolution {
   ClosureReport closure;           ///< worst over systems
   FormFactorReport form_factors;   ///< sums over systems
   std::size_t operator_bytes = 0;  ///< held at once, at most
+  std::int64_t rays = 0;           ///< cast for the operator
+  /// Of A_i F_ij = A_j F_ji: 0 where each pair is stored once; of a gather between 64 parts of equal area,
+  /// the Frobenius norm of what is not symmetric relative to the whole.
+  double reciprocity_error = 0;
+  std::optional<OperatorError> operator_error;  ///< where PlanOptions::error_bar asks for it
 };
 
 /// Follows a plan: assembles, closes, solves and forgets each system in turn. options.solve.on_iteration is
@@ -151,5 +208,34 @@ PlannedSolution run_plan(const Plan& plan, const PatchMesh& mesh, const Enclosur
 /// @throws std::invalid_argument if the plan is not one system of all patches
 PlannedSolution run_plan(const Plan& plan, const TransportOperator& transport, const PatchMesh& mesh,
                          const PlanOptions& options = {}, const PlanListener& listener = {});
+
+/// What run_gathered() gives: its plan is made on the way.
+struct GatheredRun {
+  PlannedSolution light;  ///< `form_factors` and `closure` are empty; row_sums of all rays
+  Enclosures enclosures;  ///< as the rays found them; backs count as open
+  GatherReport gather;
+  std::vector<LeftOut> left_out;
+};
+
+/// The light of a scene by gathering, all patches in one system: accuracy and seed as of form_factors, method
+/// (neumann, gmres or automatic) and tolerance as of `solve`. Iterations are told with the radiosity of the
+/// whole mesh where all channels are solved, else null.
+/// @throws SingularSystem; Cancelled; std::invalid_argument as solve_gathered() does
+GatheredRun run_gathered(const PatchMesh& mesh, const PlanOptions& options = {},
+                         const PlanListener& listener = {});
+
+/// What run_hierarchical() gives.
+struct HierarchicalRun {
+  PlannedSolution light;  ///< `form_factors` is empty; row_sums after rows were scaled
+  Enclosures enclosures;  ///< by few rays from each patch where the surfaces prove nothing
+  HierarchicalReport hierarchical;
+  std::vector<LeftOut> left_out;
+};
+
+/// The light of a scene by clusters, all patches in one system: accuracy and seed as of form_factors, the
+/// rest as of `solve`.
+/// @throws SingularSystem; Cancelled; std::invalid_argument as solve_hierarchical() does
+HierarchicalRun run_hierarchical(const PatchMesh& mesh, const PlanOptions& options = {},
+                                 const PlanListener& listener = {});
 
 }  // namespace luxel

@@ -2,6 +2,7 @@
 #include <limits>
 
 #include "luxel/plan.h"
+#include "plan/solved_channels.h"
 
 namespace luxel {
 
@@ -46,6 +47,24 @@ ChannelPlan plan_channels(const PatchField& reflectance, const PatchField& emiss
     plan.factors.push_back(factor);
   }
   return plan;
+}
+
+ChannelPlan every_channel(int count) {
+  ChannelPlan plan;
+  for (int c = 0; c < count; ++c) {
+    plan.solved.push_back(c);
+    plan.source.push_back(c);
+    plan.factors.push_back(1);
+  }
+  return plan;
+}
+
+PatchField expanded(const PatchField& solved, const ChannelPlan& channels) {
+  PatchField all = PatchField::Zero(solved.rows(), static_cast<Eigen::Index>(channels.source.size()));
+  for (std::size_t c = 0; c < channels.source.size(); ++c) {
+    if (channels.source[c] >= 0) all.col(c) = channels.factors[c] * solved.col(channels.source[c]);
+  }
+  return all;
 }
 
 }  // namespace luxel

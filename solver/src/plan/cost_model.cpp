@@ -49,6 +49,25 @@ constexpr double open_passes = 3;
 constexpr double program_bytes = 12e6;
 constexpr double patch_bytes = 2500;
 
+// A ray of a gather: against few triangles, for each doubling of them, and from where they no longer fit the
+// caches.
+constexpr double gather_ray = 30e-9, ray_doubling = 2e-9;
+constexpr double few_triangles = 64, cached_triangles = 1e5, beyond_cache = 0.5;
+
+// A ray of the error bar has no neighbours to travel with.
+constexpr double probe_ray = 2;
+
+// A patch besides its rays: packets, pictures, direct light, iteration.
+constexpr double gather_patch = 4e-6;
+
+// Clusters and passes over them [s a patch], and pairs of clusters [s, bytes; times root of patches times
+// accuracy^-order].
+constexpr double cluster_patch = 1.3e-5, cluster_pairs = 2.8e-5, cluster_order = 1.07;
+constexpr double cluster_patch_bytes = 430, cluster_pair_bytes = 1900;
+
+// Mesh, fields and pictures of a gather [a patch], and its ray scene [a triangle].
+constexpr double gather_patch_bytes = 320, triangle_bytes = 230;
+
 // Beyond this the factor's N^2 / 2 float32 numbers are 0.5 GB, and it would take hundreds of columns to pay.
 constexpr double largest_factor = 16'000;
 
@@ -113,6 +132,33 @@ double visibility_seconds(double clipped_pairs, double crowded_pairs) {
 
 double closure_seconds(double patches, Precision precision, bool closed) {
   return (closed ? closure_passes : open_passes) * apply_seconds(patches, 1, precision);
+}
+
+double gather_ray_seconds(double triangles) {
+  const double doublings = std::log2(std::max(1.0, triangles / few_triangles));
+  return (gather_ray + ray_doubling * doublings) *
+         std::pow(std::max(1.0, triangles / cached_triangles), beyond_cache);
+}
+
+double probe_seconds(double triangles) {
+  return probe_ray * gather_ray_seconds(triangles);
+}
+
+double gather_seconds(double patches, double rays_a_patch, double triangles) {
+  return patches * (gather_patch + rays_a_patch * gather_ray_seconds(triangles));
+}
+
+double hierarchical_seconds(double patches, double accuracy) {
+  return patches * cluster_patch + cluster_pairs * std::sqrt(patches) * std::pow(accuracy, -cluster_order);
+}
+
+double hierarchical_bytes(double patches, double accuracy) {
+  return program_bytes + cluster_patch_bytes * patches +
+         cluster_pair_bytes * std::sqrt(patches) * std::pow(accuracy, -cluster_order);
+}
+
+double gather_bytes(double patches, double triangles) {
+  return program_bytes + gather_patch_bytes * patches + triangle_bytes * triangles;
 }
 
 double mesh_bytes(double patches) {

@@ -48,7 +48,19 @@ double visibility_seconds(double clipped_pairs, double crowded_pairs);
 /// Row sums, and scaling them in a closed enclosure.
 double closure_seconds(double patches, Precision precision, bool closed);
 
+/// A ray of a gather, with what is done with it, against so many triangles; and one of the error bar's.
+double gather_ray_seconds(double triangles);
+double probe_seconds(double triangles);
+
+/// Everything that a gather does.
+double gather_seconds(double patches, double rays_a_patch, double triangles);
+
+/// Everything that a hierarchical operator does, in a scene of few polygons.
+double hierarchical_seconds(double patches, double accuracy);
+
 // Memory [bytes].
+double hierarchical_bytes(double patches, double accuracy);
+double gather_bytes(double patches, double triangles);
 double mesh_bytes(double patches);
 double operator_bytes(double patches, Precision precision);
 double factor_bytes(double patches, Method method);

@@ -1,5 +1,6 @@
 #include "plan/decisions.h"
 
+#include <algorithm>
 #include <string>
 
 namespace luxel {
@@ -37,6 +38,18 @@ double channel_unknowns(const std::vector<SystemPlan>& systems, const Kind& kind
     for (const int source : system.channels.source) unknowns += kind(source) ? size(system) : 0;
   }
   return unknowns;
+}
+
+std::optional<LeftOut> dark_unknowns(double unknowns) {
+  if (unknowns == 0) return std::nullopt;
+  return LeftOut{"channels without emission", "their light is exactly 0", count(unknowns, "unknown")};
+}
+
+std::optional<LeftOut> equal_unknowns(double unknowns) {
+  if (unknowns == 0) return std::nullopt;
+  return LeftOut{"channels that follow from another",
+                 "they have its reflectance on every patch and a multiple of its emission",
+                 count(unknowns, "unknown")};
 }
 
 }  // namespace
@@ -90,9 +103,12 @@ std::optional<LeftOut> idle_occluders(const std::vector<SystemPlan>& systems) {
 }
 
 std::optional<LeftOut> dark_channels(const std::vector<SystemPlan>& systems) {
-  const double unknowns = channel_unknowns(systems, [](int source) { return source < 0; });
-  if (unknowns == 0) return std::nullopt;
-  return LeftOut{"channels without emission", "their light is exactly 0", count(unknowns, "unknown")};
+  return dark_unknowns(channel_unknowns(systems, [](int source) { return source < 0; }));
+}
+
+std::optional<LeftOut> dark_channels(const ChannelPlan& channels, int patches) {
+  return dark_unknowns(static_cast<double>(std::count(channels.source.begin(), channels.source.end(), -1)) *
+                       patches);
 }
 
 std::optional<LeftOut> equal_channels(const std::vector<SystemPlan>& systems) {
@@ -101,10 +117,13 @@ std::optional<LeftOut> equal_channels(const std::vector<SystemPlan>& systems) {
     unknowns -= size(system) * static_cast<double>(system.channels.solved.size());
   }
   unknowns += channel_unknowns(systems, [](int source) { return source >= 0; });
-  if (unknowns == 0) return std::nullopt;
-  return LeftOut{"channels that follow from another",
-                 "they have its reflectance on every patch and a multiple of its emission",
-                 count(unknowns, "unknown")};
+  return equal_unknowns(unknowns);
+}
+
+std::optional<LeftOut> equal_channels(const ChannelPlan& channels, int patches) {
+  const auto lit = static_cast<double>(channels.source.size()) -
+                   static_cast<double>(std::count(channels.source.begin(), channels.source.end(), -1));
+  return equal_unknowns((lit - static_cast<double>(channels.solved.size())) * patches);
 }
 
 std::optional<LeftOut> black_patches(const PatchField& reflectance) {

@@ -20,6 +20,14 @@ std::optional<LeftOut> equal_channels(const std::vector<SystemPlan>& systems);
 /// Patches with a reflectance of exactly 0 in every channel.
 std::optional<LeftOut> black_patches(const PatchField& reflectance);
 
+/// The same of one system of so many patches.
+std::optional<LeftOut> dark_channels(const ChannelPlan& channels, int patches);
+std::optional<LeftOut> equal_channels(const ChannelPlan& channels, int patches);
+
+/// Rows of closed operators are right to 1e-12: a loss below this cannot be told from none, and is refused as
+/// singular.
+inline constexpr double smallest_loss = 1e-11;
+
 /// Adds a decision if there is one.
 void note(std::vector<LeftOut>& list, std::optional<LeftOut> decision);
 

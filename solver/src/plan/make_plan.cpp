@@ -5,6 +5,7 @@
 #include "luxel/plan.h"
 #include "plan/decisions.h"
 #include "plan/independent_groups.h"
+#include "plan/solved_channels.h"
 
 namespace luxel {
 
@@ -19,10 +20,6 @@ constexpr double float32_accuracy = 2e-7;
 // Groups smaller than this share of the patches are put together up to that size, so that a mesh of thousands
 // of crumbs does not make thousands of systems. What that costs is at most 1/64 of the pairs.
 constexpr int most_systems = 64;
-
-// Rows of closed operators are right to 1e-12: a loss below this cannot be told from none, and is refused as
-// singular.
-constexpr double smallest_loss = 1e-11;
 
 /// Channels of the patches in which nothing is absorbed and nothing escapes.
 std::vector<char> lossless_channels(const PatchField& reflectance, const std::vector<int>& patches,
@@ -144,13 +141,7 @@ class Planner {
       if (!options_.solve.bounces) lossless = lossless_channels(reflectance_, patches, closed);
       return plan_channels(reflectance_(patches, Eigen::all), emission_(patches, Eigen::all), lossless);
     }
-    ChannelPlan plan;
-    for (int c = 0; c < count; ++c) {
-      plan.solved.push_back(c);
-      plan.source.push_back(c);
-      plan.factors.push_back(1);
-    }
-    return plan;
+    return every_channel(static_cast<int>(count));
   }
 
   void tell() {

@@ -6,7 +6,9 @@
 #include <utility>
 
 #include "luxel/plan.h"
+#include "plan/cost_model.h"
 #include "plan/merged_report.h"
+#include "plan/solved_channels.h"
 
 namespace luxel {
 
@@ -32,14 +34,8 @@ Enclosures part_of(const Enclosures& all, const std::vector<int>& patches) {
   return part;
 }
 
-/// All channels from those that were solved.
-PatchField expanded(const PatchField& solved, const ChannelPlan& channels) {
-  PatchField all = PatchField::Zero(solved.rows(), static_cast<Eigen::Index>(channels.source.size()));
-  for (std::size_t c = 0; c < channels.source.size(); ++c) {
-    if (channels.source[c] >= 0) all.col(c) = channels.factors[c] * solved.col(channels.source[c]);
-  }
-  return all;
-}
+// Of the time that assembling takes: what the error bar may take.
+constexpr double error_bar_share = 0.1;
 
 class Run {
  public:
@@ -117,12 +113,34 @@ class Run {
       const double missing = std::abs(sum.emitted[c] - sum.absorbed[c] - sum.escaped[c]);
       sum.imbalance = std::max(sum.imbalance, missing / sum.emitted[c]);
     }
+    const bool stopped_early = stopped();
     result_.solution.report = report_.take();
+    result_.rays = result_.form_factors.rays;
+    if (options_.error_bar && !options_.solve.bounces && !stopped_early) measure();
     enter(PlanStage::done);
     return std::move(result_);
   }
 
  private:
+  /// The operator's error, for at most a tenth of what assembling it took.
+  void measure() {
+    if ((emission_.array() == 0).all()) return;
+    enter(PlanStage::measuring);
+    const FormFactorReport& done = result_.form_factors;
+    const auto clipped = static_cast<double>(done.exact_pairs),
+               sampled = static_cast<double>(done.sampled_pairs);
+    const double seconds =
+        assembly_seconds(static_cast<double>(done.facing_pairs), options_.form_factors.accuracy) +
+        visibility_seconds(clipped, sampled);
+    OperatorErrorOptions probing;
+    probing.accuracy = options_.form_factors.accuracy;
+    probing.seed = options_.form_factors.seed;
+    probing.most_rays =
+        error_bar_share * seconds / probe_seconds(static_cast<double>(mesh_.occluders.triangles.size()));
+    result_.operator_error = operator_error(mesh_, RayScene(mesh_.occluders), reflectance_, emission_,
+                                            result_.solution, result_.row_sums, probing, listener_.progress);
+  }
+
   void enter(PlanStage stage) const {
     if (listener_.on_stage) listener_.on_stage(stage);
   }

@@ -1,18 +1,14 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
-#include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <atomic>
-#include <cmath>
 #include <vector>
 
 #include "luxel/gather_operator.h"
 #include "sampling/owen_sobol.h"
 #include "stage_progress.h"
-#include "transport/gather/lamps.h"
-#include "transport/gather/patch_frame.h"
+#include "transport/gather/lamp_light.h"
 #include "transport/gather/shadow_rays.h"
 
 namespace luxel {
@@ -23,60 +19,10 @@ namespace {
 // a patch can be missed; 32 rays changed no error that could be seen.
 constexpr int first_rays = 16;
 
-// One point of a patch stands for all where the lamp is farther than this, in roots of its area; three
-// do down to the second distance, below it three in each of 16 parts.
-constexpr double far = 30, near = 2;
-constexpr int parts_when_near = 4;  // a side
-
 constexpr std::uint64_t first_stream = 0x6c616d70, second_stream = 0x6c616d71;
 
 // Patches a task.
 constexpr int grain = 64;
-
-/// Mean of a lamp's unoccluded form factor over a triangle, by the three-point rule in parts x parts parts.
-double mean_over_triangle(const std::array<Vec3, 3>& x, const Vec3& normal, const Lamp& lamp, int parts) {
-  const Vec3 u = (x[1] - x[0]) / parts, v = (x[2] - x[0]) / parts;
-  double sum = 0;
-  const auto add = [&](const Vec3& corner, double sign) {
-    for (const auto& [s, t] : {std::array{1.0 / 6, 1.0 / 6}, {2.0 / 3, 1.0 / 6}, {1.0 / 6, 2.0 / 3}}) {
-      sum += form_factor(corner + sign * (s * u + t * v), normal, lamp);
-    }
-  };
-  for (int i = 0; i < parts; ++i) {
-    for (int j = 0; i + j < parts; ++j) {
-      add(x[0] + i * u + j * v, 1);
-      if (i + j + 1 < parts) add(x[0] + (i + 1) * u + (j + 1) * v, -1);
-    }
-  }
-  return sum / (3 * parts * parts);
-}
-
-/// Mean of a lamp's unoccluded form factor over a patch.
-double unoccluded(const PatchFrame& patch, double area, const Lamp& lamp) {
-  const Vec3 corner = patch.corner, b = corner + patch.first, c = corner + patch.second;
-  const bool quad = patch.share < 1;
-  const Vec3 d = quad ? Vec3(corner + patch.third) : c;
-  const Vec3 first = (corner + b + c) / 3, other = (corner + c + d) / 3;
-  const Vec3 middle = quad ? Vec3(patch.share * first + (1 - patch.share) * other) : first;
-  const double reach = lamp.distance(middle) / std::sqrt(area);
-  if (reach > far) return form_factor(middle, patch.normal, lamp);
-  const int parts = reach > near ? 1 : parts_when_near;
-  const double mean = mean_over_triangle({corner, b, c}, patch.normal, lamp, parts);
-  if (!quad) return mean;
-  return patch.share * mean +
-         (1 - patch.share) * mean_over_triangle({corner, c, d}, patch.normal, lamp, parts);
-}
-
-/// Whether any point of the patch can face any of the lamp.
-bool faces(const PatchFrame& patch, const Lamp& lamp) {
-  const std::array<Vec3, 4> corners{patch.corner, patch.corner + patch.first, patch.corner + patch.second,
-                                    patch.corner + (patch.share < 1 ? patch.third : patch.second)};
-  const bool in_front = std::any_of(corners.begin(), corners.end(),
-                                    [&](const Vec3& x) { return lamp.normal.dot(x) > lamp.offset; });
-  return in_front && std::any_of(lamp.outline.begin(), lamp.outline.end(), [&](const auto& edge) {
-           return patch.normal.dot(edge[0] - patch.corner) > 0;
-         });
-}
 
 enum Seen : char { not_facing, hidden, lit, partly };
 

@@ -97,11 +97,12 @@ std::unique_ptr<GatherOperator> stored_rays(const GatherRays& rays, int count, c
   const std::size_t of_packet = static_cast<std::size_t>(count) * lanes;
   auto hits = std::make_unique_for_overwrite<std::uint32_t[]>(packets.size() * of_packet);
   StageProgress stage(progress, "rays", std::max<double>(1, static_cast<double>(packets.size())));
-  const tbb::blocked_range<std::size_t> all(0, packets.size(), packets_a_task);
-  tbb::parallel_for(all, [&](const tbb::blocked_range<std::size_t>& range) {
+  const std::size_t together = std::max(packets_a_task, rays.packets_together());
+  tbb::parallel_for(std::size_t{0}, (packets.size() + together - 1) / together, [&](std::size_t block) {
     if (stage.cancelled()) return;
-    for (std::size_t p = range.begin(); p < range.end(); ++p) rays.trace(p, 0, count, &hits[p * of_packet]);
-    stage.add(static_cast<double>(range.size()));
+    const std::size_t first = block * together, some = std::min(together, packets.size() - first);
+    rays.trace_together(first, some, 0, count, &hits[first * of_packet]);
+    stage.add(static_cast<double>(some));
   });
   stage.finish();
   return std::make_unique<GatherOperator>(std::vector(packets.begin(), packets.end()), count, std::move(hits),

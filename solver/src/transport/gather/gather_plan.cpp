@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "luxel/gather_operator.h"
+#include "transport/gather/net_size.h"
 
 namespace luxel {
 
@@ -13,10 +14,8 @@ namespace {
 // Error of single patches' irradiance: error_at_one rays^-error_order, measured on the Cornell box
 // (docs/decisions/0010-gather.md). The lower one holds for packets that are small against their polygon,
 // where the fit takes the noise of neighbours out.
-constexpr double error_at_one = 0.45, fitted_error_at_one = 0.33, error_order = 0.67;
+constexpr double error_at_one = 0.52, fitted_error_at_one = 0.36, error_order = 0.67;
 constexpr int patches_of_large_polygon = 2000;
-
-constexpr int least_rays = 16, most_rays = 1 << 20;
 
 // Hits stored in all, where a quarter of the rays would be more: what is iterated on is an average over so
 // many that its own error does not show.
@@ -30,16 +29,6 @@ constexpr std::size_t most_lamps = 256;
 
 void require(bool holds, const std::string& message) {
   if (!holds) throw std::invalid_argument("gather: " + message);
-}
-
-/// The least of 2^k and 3 2^k that is not below x: whole nets of the sequence.
-int net_size(double x) {
-  int size = least_rays;
-  while (size < x) {
-    if (size + size / 2 >= x) return size + size / 2;
-    size *= 2;
-  }
-  return size;
 }
 
 }  // namespace
@@ -64,7 +53,7 @@ GatherPlan gather_plan(const PatchMesh& mesh, const PatchField& emission, const 
   const double affordable = stored_in_all / std::max(1, mesh.size());
   const int quarter = std::max(least_rays, net_size(plan.rays / 4.0));
   plan.stored_rays = std::min(
-      plan.rays, options.stored_rays.value_or(affordable < quarter ? net_size(affordable) : quarter));
+      plan.rays, options.stored_rays.value_or(affordable < quarter ? net_within(affordable) : quarter));
   plan.shadow_rays = options.shadow_rays.value_or(plan.rays);
 
   double emitting = 0, total = 0;

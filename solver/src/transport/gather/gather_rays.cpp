@@ -13,6 +13,7 @@
 #include "sampling/sobol_words.h"
 #include "transport/gather/packets.h"
 #include "transport/gather/patch_frame.h"
+#include "transport/gather/sorted_rays.h"
 
 namespace luxel {
 
@@ -28,12 +29,29 @@ constexpr int lost_for_certain = 4, wrong_among = 8;
 constexpr int replacements = 8;
 
 // Streams of random numbers, all seeded by patch or packet.
-constexpr std::uint64_t own_stream = 0x67617468, shared_stream = 0x73686172, replacement_stream = 0x7265706c;
+constexpr std::uint64_t own_stream = 0x67617468, shared_stream = 0x73686172, replacement_stream = 0x7265706c,
+                        single_stream = 0x73696e67, sample_stream = 0x73616d70;
+
+// Rays that trace_sample() can be asked for.
+constexpr int most_rays_sampled = 1024;
 
 // With more triangles a packet shares whole directions: through small triangles, rays that are nearly
 // parallel part too soon, and where little is merged there is no plane over which neighbours' noise could be
 // fitted.
 constexpr std::size_t large_scene = 100'000;
+
+// Packets whose rays are sorted together: 8,192 patches; at 64 rays from each some 20 MB for each thread.
+constexpr std::size_t sorted_packets = 512;
+constexpr int sorted_rays = 64;
+
+// Rays of one packet between two visits to the sums: their patches stay in the first cache.
+constexpr int rays_a_visit = 128;
+
+/// Whether most packets hold patches of many polygons in a large scene.
+bool rough(const PatchMesh& mesh) {
+  return mesh.occluders.triangles.size() > large_scene &&
+         mesh.size() < 2 * lanes * static_cast<double>(mesh.occluders.polygon_count);
+}
 
 /// Shared upper digits of each of a direction's two numbers: with half the net's digits in each, no two rays
 /// of a patch share them all.
@@ -57,18 +75,27 @@ std::vector<std::int32_t> closed_cells(const PatchMesh& mesh, const RayScene& oc
 
 }  // namespace
 
-GatherRays::GatherRays(const PatchMesh& mesh, const RayScene& occluders, int count, std::uint64_t seed)
+PatchNet::PatchNet(int count)
+    : blocks_((count + lanes - 1) / lanes), words_(4 * static_cast<std::size_t>(this->count())) {
+  const std::vector<std::uint32_t> words = reversed_sobol_words(this->count());
+  for (int b = 0; b < blocks_; ++b) {
+    for (int k = 0; k < lanes; ++k) {
+      for (int q = 0; q < 4; ++q) words_[(4 * b + q) * lanes + k] = words[4 * (b * lanes + k) + q];
+    }
+  }
+}
+
+GatherRays::GatherRays(const PatchMesh& mesh, const RayScene& occluders, int count, std::uint64_t seed,
+                       int most)
     : mesh_(mesh),
       occluders_(occluders),
-      count_(count),
       seed_(seed),
       packets_(packets_of(mesh)),
-      map_(mesh),
-      words_(reversed_sobol_words(count)),
+      map_(mesh, HitMap::texels_for(mesh.size(), std::max(count, most))),
       enclosures_(closed_cells(mesh, occluders)) {
   scene_.embree = occluders.embree_scene();
-  scene_.words = words_.data();
-  scene_.lower_digits = map_.triangles().size() > large_scene ? 0 : 0xffffffffu >> shared_digits(count);
+  set_count(count);
+  if (rough(mesh)) together_ = sorted_packets;
   scene_.map = &map_;
   scene_.nothing = mesh.size();
   const bool any = std::any_of(enclosures_.begin(), enclosures_.end(), [](int cell) { return cell >= 0; });
@@ -84,7 +111,7 @@ const PatchLocator& GatherRays::locator() const {
   return *locator_;
 }
 
-PacketFrame GatherRays::frame_of(const GatherOperator::Packet& packet) const {
+PacketFrame GatherRays::frame_of(const GatherOperator::Packet& packet, std::uint64_t seed_of_all) const {
   PacketFrame frame;
   const Vec3 tangent = mesh_.normals[packet[0]].unitOrthogonal();
   for (int k = 0; k < lanes; ++k) {
@@ -105,23 +132,91 @@ PacketFrame GatherRays::frame_of(const GatherOperator::Packet& packet) const {
       frame.bitangent[c][k] = static_cast<float>(bitangent[c]);
     }
     frame.share[k] = static_cast<float>(own.share);
-    const std::uint64_t seed = mixed_seed(seed_ ^ own_stream, patch);
+    const std::uint64_t seed = mixed_seed(seed_of_all ^ own_stream, patch);
     for (int q = 0; q < 4; ++q) frame.seeds[q][k] = static_cast<std::uint32_t>(mixed_seed(seed, q));
     frame.enclosure[k] = enclosures_[patch];
     frame.valid[k] = packet[k] >= 0 ? -1 : 0;
   }
-  const std::uint64_t seed = mixed_seed(seed_ ^ shared_stream, packet[0]);
+  const std::uint64_t seed = mixed_seed(seed_of_all ^ shared_stream, packet[0]);
   for (int q = 0; q < 2; ++q) frame.shared_seeds[q] = static_cast<std::uint32_t>(mixed_seed(seed, q));
   return frame;
 }
 
 void GatherRays::trace(std::size_t packet, int first, int count, std::uint32_t* met) const {
-  const PacketFrame frame = frame_of(packets_[packet]);
+  const PacketFrame frame = frame_of(packets_[packet], seed_);
   std::vector<DoubtfulRay> doubtful;
   trace_packet(scene_, frame, first, count, met, doubtful);
+  settle(packets_[packet], first, doubtful, met);
+}
+
+int GatherRays::rays_together() const {
+  return together_ == 1 ? rays_a_visit : sorted_rays;
+}
+
+void GatherRays::trace_together(std::size_t first_packet, std::size_t packets, int first, int count,
+                                std::uint32_t* met) const {
+  const std::size_t of_packet = static_cast<std::size_t>(count) * lanes;
+  if (together_ == 1) {
+    for (std::size_t p = 0; p < packets; ++p) trace(first_packet + p, first, count, met + p * of_packet);
+    return;
+  }
+  std::vector<PacketFrame> frames;
+  for (std::size_t p = 0; p < packets; ++p) frames.push_back(frame_of(packets_[first_packet + p], seed_));
+  static thread_local SortedRays sorted;
+  trace_sorted(scene_, frames, first, count, met, sorted);
+  std::stable_sort(sorted.doubtful.begin(), sorted.doubtful.end(),
+                   [](const DoubtfulRay& a, const DoubtfulRay& b) {
+                     return std::pair(a.ray, a.lane) < std::pair(b.ray, b.lane);
+                   });
+  for (auto from = sorted.doubtful.begin(); from != sorted.doubtful.end();) {
+    const int packet = from->ray / count;
+    std::vector<DoubtfulRay> of_one;
+    for (; from != sorted.doubtful.end() && from->ray / count == packet; ++from) {
+      of_one.push_back(*from);
+      of_one.back().ray -= packet * count;
+    }
+    settle(packets_[first_packet + packet], first, of_one, met + packet * of_packet);
+  }
+}
+
+void GatherRays::trace_sample(std::size_t packet, int sample, int count, std::uint32_t* met) const {
+  const PacketFrame frame = frame_of(packets_[packet], mixed_seed(seed_ ^ sample_stream, sample));
+  std::vector<DoubtfulRay> doubtful;
+  trace_packet(scene_, frame, 0, count, met, doubtful);
+  settle(packets_[packet], 0, doubtful, met);
+}
+
+bool GatherRays::set_count(int count) {
+  count_ = count;
+  words_ = reversed_sobol_words(std::max(count, most_rays_sampled));
+  scene_.words = words_.data();
+  const std::uint32_t digits = scene_.lower_digits;
+  scene_.lower_digits = map_.triangles().size() > large_scene ? 0 : 0xffffffffu >> shared_digits(count);
+  return scene_.lower_digits == digits;
+}
+
+void GatherRays::trace_patch(int patch, const PatchNet& net, std::uint64_t seed, std::uint32_t* met) const {
+  GatherOperator::Packet packet;
+  packet.fill(patch);
+  PacketFrame frame = frame_of(packet, seed_);
+  const std::uint64_t own = mixed_seed(seed ^ single_stream, patch);
+  for (int q = 0; q < 4; ++q) {
+    std::fill_n(frame.seeds[q], lanes, static_cast<std::uint32_t>(mixed_seed(own, q)));
+  }
+  PacketScene scene = scene_;
+  scene.words = net.words_.data();
+  scene.lane_words = true;
+  scene.lower_digits = ~0u;
+  std::vector<DoubtfulRay> doubtful;
+  trace_packet(scene, frame, 0, net.blocks_, met, doubtful);
+  settle(packet, 0, doubtful, met);
+}
+
+void GatherRays::settle(const GatherOperator::Packet& packet, int first,
+                        const std::vector<DoubtfulRay>& doubtful, std::uint32_t* met) const {
   int asked = 0, lost = 0, found = 0;
   for (const DoubtfulRay& ray : doubtful) {
-    const int patch = packets_[packet][ray.lane];
+    const int patch = packet[ray.lane];
     const bool closed = enclosures_[patch] >= 0;
     if (ray.lost && !closed && lost >= lost_for_certain && lost > wrong_among * found) continue;
     std::uint32_t& end = met[static_cast<std::size_t>(ray.ray) * lanes + ray.lane];
@@ -141,21 +236,32 @@ int GatherRays::patch_met(int patch, const Vec3& origin, const Vec3& direction) 
   RayScene::Hit hit;
   occluders_.intersect({&origin, 1}, {&mesh_.normals[patch], 1}, {&direction, 1}, {&hit, 1});
   if (hit.primitive < 0) return -1;
-  int met = map_.at(hit.primitive, hit.front, hit.u, hit.v);
-  if (met == HitMap::ask) {
-    met = locator().patch_at(hit.primitive, hit.front, origin + hit.distance * direction);
-  }
+  const int met = locator().patch_at(hit.primitive, hit.front, origin + hit.distance * direction);
   if (met < 0) return -1;
   const bool leaked = enclosures_[patch] >= 0 && enclosures_[met] != enclosures_[patch];
   return leaked ? -1 : met;
 }
 
+/// The patch at a hit whose texel does not know; -1 as in patch_met().
+int GatherRays::patch_hit(int patch, const DoubtfulRay& ray) const {
+  const auto& [a, b, c] = mesh_.occluders.triangles[ray.triangle];
+  const Vec3& corner = mesh_.occluders.vertices[a];
+  const Vec3 point = corner + ray.u * (mesh_.occluders.vertices[b] - corner) +
+                     ray.v * (mesh_.occluders.vertices[c] - corner);
+  const int met = locator().patch_at(ray.triangle, ray.front, point);
+  if (met < 0) return -1;
+  return enclosures_[patch] >= 0 && enclosures_[met] != enclosures_[patch] ? -1 : met;
+}
+
 std::uint32_t GatherRays::settled(int patch, const DoubtfulRay& ray) const {
-  const auto vector = [](const float* x) { return Vec3(x[0], x[1], x[2]); };
-  Vec3 origin = vector(ray.origin) / occluders_.scale() + occluders_.centre();
-  const Vec3& normal = mesh_.normals[patch];
-  origin -= normal.dot(origin - mesh_.centroids[patch]) * normal;
-  const int met = patch_met(patch, origin, vector(ray.direction).normalized());
+  int met = ray.lost ? -1 : patch_hit(patch, ray);
+  if (met < 0) {
+    const auto vector = [](const float* x) { return Vec3(x[0], x[1], x[2]); };
+    Vec3 origin = vector(ray.origin) / occluders_.scale() + occluders_.centre();
+    const Vec3& normal = mesh_.normals[patch];
+    origin -= normal.dot(origin - mesh_.centroids[patch]) * normal;
+    met = patch_met(patch, origin, vector(ray.direction).normalized());
+  }
   return static_cast<std::uint32_t>(met >= 0 ? met : mesh_.size());
 }
 

@@ -14,6 +14,19 @@
 
 namespace luxel {
 
+/// Points of a net for the rays of a single patch: sixteen at a time, which is what trace_patch() takes.
+class PatchNet {
+ public:
+  /// @param count  is rounded up to a multiple of 16
+  explicit PatchNet(int count);
+  int count() const { return blocks_ * GatherOperator::lanes; }
+
+ private:
+  friend class GatherRays;
+  int blocks_;
+  std::vector<std::uint32_t> words_;  // blocks x 4 x lanes
+};
+
 /// The rays of a gather: for each packet of patches the first `count` points of one scrambled net, traced in
 /// any number of goes. Safe from many threads. The mesh and the ray scene must outlive it.
 ///
@@ -23,7 +36,12 @@ namespace luxel {
 class GatherRays {
  public:
   /// @param count  rays from each patch in all; the net's digits that a packet shares follow from it
-  GatherRays(const PatchMesh& mesh, const RayScene& occluders, int count, std::uint64_t seed);
+  /// @param most   rays from one patch that the map from hits to patches shall be fine enough for
+  GatherRays(const PatchMesh& mesh, const RayScene& occluders, int count, std::uint64_t seed, int most = 0);
+
+  /// Another number of rays from each patch. Tells whether what was traced so far still belongs to the same
+  /// nets; else trace() gives others from now on.
+  bool set_count(int count);
 
   std::span<const GatherOperator::Packet> packets() const { return packets_; }
   int count() const { return count_; }
@@ -33,11 +51,32 @@ class GatherRays {
   /// Idle lanes hold any of these.
   void trace(std::size_t packet, int first, int count, std::uint32_t* met) const;
 
+  /// What the first rays of a packet's other nets meet: `sample` numbers nets that are independent of those
+  /// of trace(), with as many shared digits.
+  void trace_sample(std::size_t packet, int sample, int count, std::uint32_t* met) const;
+
+  /// Packets that are best traced in one go: 1 where a packet's rays keep together by themselves, many in
+  /// large scenes of small polygons, whose rays are sorted first. Multiples of it share out the packets.
+  std::size_t packets_together() const { return together_; }
+  /// Rays of a packet that are best traced in one go.
+  int rays_together() const;
+  /// The same for packets first_packet .. first_packet + packets, which trace() alone would give as well.
+  void trace_together(std::size_t first_packet, std::size_t packets, int first, int count,
+                      std::uint32_t* met) const;
+
+  /// What the rays of one net of `net`'s points from one patch meet, as trace() tells it. Other seeds give
+  /// independent nets; none depends on the packets' own rays.
+  void trace_patch(int patch, const PatchNet& net, std::uint64_t seed, std::uint32_t* met) const;
+
   /// Rays settled in double precision so far.
   std::int64_t asked_twice() const { return asked_twice_; }
 
  private:
-  PacketFrame frame_of(const GatherOperator::Packet& packet) const;
+  PacketFrame frame_of(const GatherOperator::Packet& packet, std::uint64_t seed) const;
+  /// Puts right what `doubtful` says of rays first .. of a packet.
+  void settle(const GatherOperator::Packet& packet, int first, const std::vector<DoubtfulRay>& doubtful,
+              std::uint32_t* met) const;
+  int patch_hit(int patch, const DoubtfulRay& ray) const;
   std::uint32_t settled(int patch, const DoubtfulRay& ray) const;
   std::uint32_t replaced(int patch, std::uint64_t seed) const;
   int patch_met(int patch, const Vec3& origin, const Vec3& direction) const;
@@ -50,6 +89,7 @@ class GatherRays {
   std::vector<GatherOperator::Packet> packets_;
   HitMap map_;
   std::vector<std::uint32_t> words_;
+  std::size_t together_ = 1;
   std::vector<std::int32_t> enclosures_;  // the closed cell of each patch or -1; and of nothing
   PacketScene scene_;
   mutable std::once_flag locator_made_;

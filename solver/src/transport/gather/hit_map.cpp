@@ -9,16 +9,19 @@
 #include <span>
 #include <stdexcept>
 
+#include "transport/gather/contact_edges.h"
 #include "transport/gather/plane_picture.h"
 
 namespace luxel {
 
 namespace {
 
-// Texels a patch, by the number of patches: 16 move boundaries by an eighth of a patch at most; at a million
-// patches the picture's place in the cache counts more.
-constexpr double texels_of_few = 16, texels_of_many = 4;
-constexpr int many_patches = 200'000;
+// Texels a patch: 16 move boundaries by an eighth of a patch at most, which is felt (1e-3 of the irradiance
+// in a room of 600 patches) where there are more rays than this for each; at a million patches the picture's
+// place in the cache counts more.
+constexpr double least_texels = 4, usual_texels = 16, most_texels = 256;
+constexpr double rays_a_texel = 16;
+constexpr double texels_in_all = 4e6;
 
 /// Indices 0 .. keys.size(), in lists by their keys, each list in order.
 struct Lists {
@@ -47,7 +50,12 @@ Vec3 front_of(const Occluders& occluders, std::span<const int> triangles) {
 
 }  // namespace
 
-HitMap::HitMap(const PatchMesh& mesh) : triangles_(mesh.occluders.triangles.size()) {
+double HitMap::texels_for(int patches, int rays) {
+  const double wanted = std::clamp(rays / rays_a_texel, usual_texels, most_texels);
+  return std::max(least_texels, std::min(wanted, texels_in_all / std::max(1, patches)));
+}
+
+HitMap::HitMap(const PatchMesh& mesh, double texels_a_patch) : triangles_(mesh.occluders.triangles.size()) {
   const Occluders& occluders = mesh.occluders;
   const int polygons = occluders.polygon_count;
   const Lists triangles_of(occluders.polygons, polygons);
@@ -58,7 +66,6 @@ HitMap::HitMap(const PatchMesh& mesh) : triangles_(mesh.occluders.triangles.size
     side_of[i] = 2 * mesh.polygons[i] + (mesh.normals[i].dot(fronts[mesh.polygons[i]]) > 0 ? 0 : 1);
   }
   const Lists patches_of(side_of, 2 * polygons);
-  const double texels_a_patch = mesh.size() < many_patches ? texels_of_few : texels_of_many;
 
   std::vector<PlanePicture> pictures(polygons);
   std::vector<std::array<std::int32_t, 2>> first(polygons, {no_side, no_side});
@@ -79,6 +86,7 @@ HitMap::HitMap(const PatchMesh& mesh) : triangles_(mesh.occluders.triangles.size
     throw std::invalid_argument("HitMap: more patches than texel numbers of 31 bits");
   }
   texels_.assign(total, ask);
+  const ContactEdges contacts(mesh);
   tbb::parallel_for(0, polygons, [&](int p) {
     const PlanePicture& picture = pictures[p];
     for (int side = 0; side < 2; ++side) {
@@ -90,6 +98,9 @@ HitMap::HitMap(const PatchMesh& mesh) : triangles_(mesh.occluders.triangles.size
         std::fill(texels.begin(), texels.end(), patches[0]);
       } else {
         draw_patches(mesh, patches, picture, texels);
+        for (const auto& [a, b] : contacts.between(patches)) {
+          draw_doubt(picture, mesh.vertices[a], mesh.vertices[b], texels);
+        }
       }
     }
     for (int t : triangles_of[p]) {

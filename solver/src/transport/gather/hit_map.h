@@ -10,8 +10,9 @@ namespace luxel {
 
 /// From what a ray met (a triangle of the occluders, its side, barycentric coordinates) to the patch there,
 /// by a picture of each polygon's side whose texels hold patch numbers: vector code can read it. Boundaries
-/// between patches are moved by half a texel at most; where that could lose a whole patch the texel says
-/// `ask`, and PatchLocator knows. Memory: 16 to 64 bytes a patch, 48 a triangle.
+/// between patches are blurred by a texel at most; where that could lose a whole patch, or where another
+/// polygon stands between the two, the texel says `ask`, and PatchLocator knows. Memory: 16 to 64 bytes a
+/// patch, 48 a triangle.
 class HitMap {
  public:
   static constexpr std::int32_t ask = -1;      ///< a texel that does not know
@@ -28,7 +29,10 @@ class HitMap {
   static constexpr int words = 12;
   static_assert(sizeof(Triangle) == words * sizeof(float));
 
-  explicit HitMap(const PatchMesh& mesh);
+  explicit HitMap(const PatchMesh& mesh, double texels_a_patch = 16);
+
+  /// Texels a patch that are worth having for so many rays from each.
+  static double texels_for(int patches, int rays);
 
   /// What the map says of a hit: a patch, `ask`, or `off_patches` where that side has none.
   std::int32_t at(int triangle, bool front, float u, float v) const;

@@ -1,232 +1,17 @@
 #include "transport/gather/packet_kernel.h"
 
-#include <embree3/rtcore.h>
-
-#include <cmath>
-#include <limits>
-
-#include "sampling/sobol_words.h"
-
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "transport/gather/packet_kernel.cpp"
 // Highway compiles this file once per instruction set; the order of its headers matters.
 // clang-format off
 #include <hwy/foreach_target.h>
-#include <hwy/cache_control.h>
 #include <hwy/highway.h>
+#include "transport/gather/packet_lanes-inl.h"
 // clang-format on
 
 HWY_BEFORE_NAMESPACE();
 namespace luxel::HWY_NAMESPACE {
 namespace {
-
-namespace hn = hwy::HWY_NAMESPACE;
-using Real = hn::CappedTag<float, PacketFrame::lanes>;
-using Word = hn::RebindToUnsigned<Real>;
-using Number = hn::RebindToSigned<Real>;
-using Reals = hn::Vec<Real>;
-using Words = hn::Vec<Word>;
-using Numbers = hn::Vec<Number>;
-
-constexpr int lanes = PacketFrame::lanes;
-
-HWY_INLINE Words Scrambled(const Words word, const Words seed) {
-  const Word d;
-  Words x = word;
-  x = hn::Xor(x, hn::Mul(x, hn::Set(d, LaineKarras::first)));
-  x = hn::Add(x, seed);
-  x = hn::Mul(x, hn::Or(hn::ShiftRight<16>(seed), hn::Set(d, 1u)));
-  x = hn::Xor(x, hn::Mul(x, hn::Set(d, LaineKarras::second)));
-  x = hn::Xor(x, hn::Mul(x, hn::Set(d, LaineKarras::third)));
-  return x;
-}
-
-// Bits of a byte by two tables of half bytes, then the bytes of a word.
-HWY_INLINE Words BitsReversed(const Words word) {
-  const hn::Repartition<uint8_t, Word> d;
-  alignas(16) static constexpr uint8_t lower[16] = {0x00, 0x80, 0x40, 0xc0, 0x20, 0xa0, 0x60, 0xe0,
-                                                    0x10, 0x90, 0x50, 0xd0, 0x30, 0xb0, 0x70, 0xf0};
-  alignas(16) static constexpr uint8_t upper[16] = {0x0, 0x8, 0x4, 0xc, 0x2, 0xa, 0x6, 0xe,
-                                                    0x1, 0x9, 0x5, 0xd, 0x3, 0xb, 0x7, 0xf};
-  alignas(16) static constexpr uint8_t bytes[16] = {3, 2, 1, 0, 7, 6, 5, 4, 11, 10, 9, 8, 15, 14, 13, 12};
-  const Word w;
-  const Words mask = hn::Set(w, 0x0f0f0f0fu);
-  const auto low = hn::BitCast(d, hn::And(word, mask));
-  const auto high = hn::BitCast(d, hn::And(hn::ShiftRight<4>(word), mask));
-  const auto turned = hn::Or(hn::TableLookupBytes(hn::LoadDup128(d, lower), low),
-                             hn::TableLookupBytes(hn::LoadDup128(d, upper), high));
-  return hn::BitCast(w, hn::TableLookupBytes(turned, hn::LoadDup128(d, bytes)));
-}
-
-// 24 bits as a fraction in [0, 1).
-HWY_INLINE Reals Fraction(const Words word) {
-  const Real d;
-  const Number n;
-  return hn::Mul(hn::ConvertTo(d, hn::BitCast(n, hn::ShiftRight<8>(word))), hn::Set(d, 0x1p-24f));
-}
-
-struct Direction {
-  Reals x, y, z;
-};
-
-// Cosine-distributed about z (Malley). The azimuth t in [0, 1) by sine and cosine of pi (t - 1/2), Taylor to
-// 4e-6, and the double angle.
-HWY_INLINE Direction CosineDirection(const Reals height, const Reals azimuth) {
-  const Real d;
-  // half a step up from the horizon, which no ray may run along
-  const Reals square = hn::Min(height, hn::Set(d, 1 - 0x1p-24f));
-  const Reals radius = hn::Sqrt(square);
-  const Reals half = hn::Set(d, 0.5f), one = hn::Set(d, 1.0f), two = hn::Set(d, 2.0f);
-  const Reals t = hn::Mul(hn::Sub(azimuth, half), hn::Set(d, 3.14159265f));
-  const Reals t2 = hn::Mul(t, t);
-  Reals sine = hn::MulAdd(t2, hn::Set(d, 2.7557319e-6f), hn::Set(d, -1.9841270e-4f));
-  sine = hn::MulAdd(t2, sine, hn::Set(d, 8.3333333e-3f));
-  sine = hn::MulAdd(t2, sine, hn::Set(d, -1.6666667e-1f));
-  sine = hn::Mul(t, hn::MulAdd(t2, sine, one));
-  Reals cosine = hn::MulAdd(t2, hn::Set(d, -2.7557319e-7f), hn::Set(d, 2.4801587e-5f));
-  cosine = hn::MulAdd(t2, cosine, hn::Set(d, -1.3888889e-3f));
-  cosine = hn::MulAdd(t2, cosine, hn::Set(d, 4.1666667e-2f));
-  cosine = hn::MulAdd(t2, cosine, hn::Set(d, -0.5f));
-  cosine = hn::MulAdd(t2, cosine, one);
-  return {hn::Mul(radius, hn::NegMulAdd(hn::Mul(sine, sine), two, one)),
-          hn::Mul(radius, hn::Mul(two, hn::Mul(sine, cosine))), hn::Sqrt(hn::Sub(one, square))};
-}
-
-// Lanes k .. of the ray `words` belongs to.
-HWY_INLINE void StartRays(const PacketScene& scene, const PacketFrame& frame, const uint32_t* words,
-                          uint32_t height, uint32_t azimuth, int k, RTCRayHit16& rays) {
-  const Real d;
-  const Word w;
-  const auto seed = [&](int q) { return hn::Load(w, frame.seeds[q] + k); };
-  const auto own = [&](int q) { return BitsReversed(Scrambled(hn::Set(w, words[q]), seed(q))); };
-
-  // the point: which triangle, then the square folded to it
-  Reals s = Fraction(own(0)), t = Fraction(own(1));
-  const Reals share = hn::Load(d, frame.share + k), one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f);
-  const auto in_first = hn::Lt(s, share);
-  s = hn::IfThenElse(in_first, hn::Div(s, share),
-                     hn::Div(hn::Sub(s, share), hn::Max(hn::Sub(one, share), hn::Set(d, 0x1p-24f))));
-  const auto above = hn::Gt(t, s);
-  const Reals half_s = hn::Mul(s, half), half_t = hn::Mul(t, half);
-  s = hn::IfThenElse(above, half_s, hn::Sub(s, half_t));
-  t = hn::IfThenElse(above, hn::Sub(t, half_s), half_t);
-
-  // the direction: upper digits from the packet, lower from the lane
-  const Words lower = hn::Set(w, scene.lower_digits);
-  const auto joined = [&](uint32_t shared, int q) {
-    return Fraction(hn::Or(hn::Set(w, shared & ~scene.lower_digits), hn::And(own(q), lower)));
-  };
-  const Direction local = CosineDirection(joined(height, 2), joined(azimuth, 3));
-
-  float* origins[3] = {rays.ray.org_x, rays.ray.org_y, rays.ray.org_z};
-  float* directions[3] = {rays.ray.dir_x, rays.ray.dir_y, rays.ray.dir_z};
-  for (int c = 0; c < 3; ++c) {
-    const Reals second = hn::Load(d, frame.second[c] + k);
-    const Reals a = hn::IfThenElse(in_first, hn::Load(d, frame.first[c] + k), second);
-    const Reals b = hn::IfThenElse(in_first, second, hn::Load(d, frame.third[c] + k));
-    hn::Store(hn::MulAdd(s, a, hn::MulAdd(t, b, hn::Load(d, frame.corner[c] + k))), d, origins[c] + k);
-    const Reals along = hn::MulAdd(local.x, hn::Load(d, frame.tangent[c] + k),
-                                   hn::MulAdd(local.y, hn::Load(d, frame.bitangent[c] + k),
-                                              hn::Mul(local.z, hn::Load(d, frame.normal[c] + k))));
-    hn::Store(along, d, directions[c] + k);
-  }
-  hn::Store(hn::Zero(d), d, rays.ray.tnear + k);
-  hn::Store(hn::Set(d, std::numeric_limits<float>::infinity()), d, rays.ray.tfar + k);
-  hn::Store(hn::Set(w, RTC_INVALID_GEOMETRY_ID), w, rays.hit.geomID + k);
-}
-
-// A packet under way, and where its hits lie in the map; negative: on no patch.
-struct alignas(64) Flight {
-  RTCRayHit16 rays = {};
-  int32_t texels[lanes];
-};
-
-// Where lanes k .. hit; their texels are called for.
-HWY_INLINE void FindTexels(const PacketScene& scene, int k, Flight& flight) {
-  const Real d;
-  const Word w;
-  const Number n;
-  const RTCHit16& hits = flight.rays.hit;
-  const RTCRay16& rays = flight.rays.ray;
-  const auto* numbers = reinterpret_cast<const int32_t*>(scene.map->triangles().data());
-  const auto* reals = reinterpret_cast<const float*>(numbers);
-  const auto hit = hn::Ne(hn::Load(w, hits.geomID + k), hn::Set(w, RTC_INVALID_GEOMETRY_ID));
-  const auto hit_number = hn::RebindMask(n, hit);
-  const Numbers zero = hn::Zero(n), one = hn::Set(n, 1);
-
-  const Numbers triangle = hn::IfThenElseZero(hit_number, hn::BitCast(n, hn::Load(w, hits.primID + k)));
-  const Numbers at = hn::Mul(triangle, hn::Set(n, HitMap::words));
-  const auto real = [&](int q) { return hn::GatherIndex(d, reals, hn::Add(at, hn::Set(n, q))); };
-  const auto number = [&](const Numbers q) { return hn::GatherIndex(n, numbers, hn::Add(at, q)); };
-  // a lane without a hit holds no coordinates
-  const Reals u = hn::IfThenElseZero(hn::RebindMask(d, hit), hn::Load(d, hits.u + k));
-  const Reals v = hn::IfThenElseZero(hn::RebindMask(d, hit), hn::Load(d, hits.v + k));
-  const Reals x = hn::MulAdd(u, real(1), hn::MulAdd(v, real(2), real(0)));
-  const Reals y = hn::MulAdd(u, real(4), hn::MulAdd(v, real(5), real(3)));
-  const Numbers width = number(hn::Set(n, 6)), height = number(hn::Set(n, 7));
-  const Numbers column = hn::Max(zero, hn::Min(hn::Sub(width, one), hn::ConvertTo(n, x)));
-  const Numbers row = hn::Max(zero, hn::Min(hn::Sub(height, one), hn::ConvertTo(n, y)));
-
-  // Embree's normal points to where the corners run counter-clockwise: the front
-  const Reals facing =
-      hn::MulAdd(hn::Load(d, hits.Ng_x + k), hn::Load(d, rays.dir_x + k),
-                 hn::MulAdd(hn::Load(d, hits.Ng_y + k), hn::Load(d, rays.dir_y + k),
-                            hn::Mul(hn::Load(d, hits.Ng_z + k), hn::Load(d, rays.dir_z + k))));
-  const auto back = hn::RebindMask(n, hn::Ge(facing, hn::Zero(d)));
-  const Numbers first = number(hn::IfThenElse(back, hn::Set(n, 9), hn::Set(n, 8)));
-  const auto on_patch = hn::AndNot(hn::Lt(first, zero), hit_number);
-  const Numbers texel = hn::Add(first, hn::Add(hn::Mul(row, width), column));
-  hn::Store(hn::IfThenElse(on_patch, texel, hn::Set(n, -1)), n, flight.texels + k);
-  const int end = k + static_cast<int>(hn::Lanes(d));
-  for (int q = k; q < end; ++q) hwy::Prefetch(scene.map->texels().data() + (flight.texels[q] & INT32_MAX));
-}
-
-// The patches there to `met`; gives the lanes in doubt.
-HWY_INLINE uint64_t FindPatches(const PacketScene& scene, const PacketFrame& frame, const Flight& flight,
-                                int k, uint32_t* met) {
-  const Word w;
-  const Number n;
-  const Numbers nothing = hn::Set(n, scene.nothing), zero = hn::Zero(n);
-  const Numbers texel = hn::Load(n, flight.texels + k);
-  const auto off = hn::Lt(texel, zero);
-  const Numbers patch = hn::IfThenElse(
-      off, nothing, hn::GatherIndex(n, scene.map->texels().data(), hn::IfThenZeroElse(off, texel)));
-
-  const Numbers home = hn::Load(n, frame.enclosure + k);
-  const auto asks = hn::Lt(patch, zero);
-  const auto lost = hn::Eq(patch, nothing);
-  const auto open = hn::Lt(home, zero);
-  auto doubtful = hn::Or(asks, lost);
-  const Numbers known = hn::IfThenElse(asks, nothing, patch);
-  if (scene.enclosures) {
-    const auto elsewhere = hn::Ne(hn::GatherIndex(n, scene.enclosures, known), home);
-    doubtful = hn::Or(doubtful, hn::AndNot(open, elsewhere));
-  }
-  doubtful = hn::And(doubtful, hn::Ne(hn::Load(n, frame.valid + k), zero));
-  hn::StoreU(hn::BitCast(w, known), w, met + k);
-  if (hn::AllFalse(n, doubtful)) return 0;
-  uint8_t bits[8] = {};
-  hn::StoreMaskBits(n, doubtful, bits);
-  return bits[0] | static_cast<uint64_t>(bits[1]) << 8;
-}
-
-HWY_INLINE void Land(const PacketScene& scene, const PacketFrame& frame, const Flight& flight, int ray,
-                     uint32_t* met, std::vector<DoubtfulRay>& doubtful) {
-  const int step = static_cast<int>(hn::Lanes(Real()));
-  uint64_t doubts = 0;
-  for (int k = 0; k < lanes; k += step) {
-    doubts |= FindPatches(scene, frame, flight, k, met + static_cast<size_t>(ray) * lanes) << k;
-  }
-  const RTCRay16& rays = flight.rays.ray;
-  for (; doubts != 0; doubts &= doubts - 1) {
-    const int k = static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero64(doubts));
-    doubtful.push_back({ray,
-                        k,
-                        flight.texels[k] < 0,
-                        {rays.org_x[k], rays.org_y[k], rays.org_z[k]},
-                        {rays.dir_x[k], rays.dir_y[k], rays.dir_z[k]}});
-  }
-}
 
 void Trace(const PacketScene& scene, const PacketFrame& frame, int first, int count, uint32_t* met,
            std::vector<DoubtfulRay>& doubtful) {
@@ -243,12 +28,19 @@ void Trace(const PacketScene& scene, const PacketFrame& frame, int first, int co
     }
   }
   const LaineKarras scramble;
+  const int words_a_ray = scene.lane_words ? 4 * lanes : 4;
   for (int q = 0; q < count; ++q) {
     Flight& flight = flights[q % 2];
-    const uint32_t* words = scene.words + 4 * static_cast<size_t>(first + q);
+    const uint32_t* words = scene.words + words_a_ray * static_cast<size_t>(first + q);
     const uint32_t height = bits_reversed(scramble(words[2], frame.shared_seeds[0]));
     const uint32_t azimuth = bits_reversed(scramble(words[3], frame.shared_seeds[1]));
-    for (int k = 0; k < lanes; k += step) StartRays(scene, frame, words, height, azimuth, k, flight.rays);
+    RTCRay16& ray = flight.rays.ray;
+    float* const origins[3] = {ray.org_x, ray.org_y, ray.org_z};
+    float* const directions[3] = {ray.dir_x, ray.dir_y, ray.dir_z};
+    for (int k = 0; k < lanes; k += step) {
+      StartRays(scene, frame, words, height, azimuth, k, origins, directions);
+    }
+    ResetHits(flight.rays);
     rtcIntersect16(frame.valid, static_cast<RTCScene>(scene.embree), &context, &flight.rays);
     for (int k = 0; k < lanes; k += step) FindTexels(scene, k, flight);
     if (q > 0) Land(scene, frame, flights[(q - 1) % 2], q - 1, met, doubtful);

@@ -27,7 +27,8 @@ struct alignas(64) PacketFrame {
 /// What all packets share.
 struct PacketScene {
   void* embree = nullptr;                ///< RTCScene
-  const std::uint32_t* words = nullptr;  ///< reversed_sobol_words
+  const std::uint32_t* words = nullptr;  ///< reversed_sobol_words, 4 a ray, or 4 rows of one a lane
+  bool lane_words = false;               ///< each lane has a point of the net for itself
   std::uint32_t lower_digits = 0;        ///< mask of the digits of a direction that are a lane's own
   const HitMap* map = nullptr;
   std::int32_t nothing = 0;                  ///< what a lost ray met
@@ -38,8 +39,11 @@ struct PacketScene {
 struct DoubtfulRay {
   int ray;  ///< from 0: the first of the call
   int lane;
-  bool lost;  ///< met nothing, or a back; else: the map does not know
+  bool lost;  ///< met nothing, a back or another cell; else: the map does not know
   float origin[3], direction[3];
+  int triangle;  ///< met, with barycentric coordinates and side; only where it is not lost
+  float u, v;
+  bool front;
 };
 
 /// Traces rays first .. first + count of a packet; patches met go to `met`, count x lanes, and those to be

@@ -73,6 +73,15 @@ struct Outline {
   }
 };
 
+/// The point of a texel whose patch it holds: somewhere else in each, evenly along rows, columns and slants,
+/// so that along an edge as many texels hold either patch as it has area there, and light across the edge is
+/// neither gained nor lost. Golden-ratio and plastic-number sequences (Roberts 2018).
+Eigen::Vector2d sample_of(int x, int y) {
+  constexpr double golden = 0.6180339887498949, plastic = 0.7548776662466927, square = 0.5698402909980532;
+  const auto fraction = [](double at) { return at - std::floor(at); };
+  return {x + fraction(plastic * x + golden * y), y + fraction(golden * x + square * y)};
+}
+
 /// Empty texels take a full neighbour's patch, nearest first.
 void spread(const PlanePicture& picture, std::int32_t empty, std::span<std::int32_t> texels) {
   constexpr std::array<std::array<int, 2>, 8> neighbours{
@@ -146,12 +155,11 @@ void draw_patches(const PatchMesh& mesh, std::span<const int> patches, const Pla
   std::vector<int> lost;
   for (int patch : patches) {
     const Outline outline(mesh, patch, picture);
-    // texels whose centres lie in the patch's box
-    const Eigen::Array2i low = outline.low(0.5).max(0), high = outline.high(-0.5).min(last);
+    const Eigen::Array2i low = outline.low(0).max(0), high = outline.high(0).min(last);
     bool drawn = false;
     for (int y = low[1]; y <= high[1]; ++y) {
       for (int x = low[0]; x <= high[0]; ++x) {
-        if (!outline.holds({x + 0.5, y + 0.5})) continue;
+        if (!outline.holds(sample_of(x, y))) continue;
         texels[static_cast<std::size_t>(y) * picture.width + x] = patch;
         drawn = true;
       }
@@ -166,6 +174,25 @@ void draw_patches(const PatchMesh& mesh, std::span<const int> patches, const Pla
     for (int y = low[1]; y <= high[1]; ++y) {
       for (int x = low[0]; x <= high[0]; ++x)
         texels[static_cast<std::size_t>(y) * picture.width + x] = HitMap::ask;
+    }
+  }
+}
+
+void draw_doubt(const PlanePicture& picture, const Vec3& from, const Vec3& to,
+                std::span<std::int32_t> texels) {
+  // from the centre of a texel to its farthest points
+  constexpr double reach = 0.7072;
+  const Eigen::Vector2d a = picture.at(from), edge = picture.at(to) - a;
+  const Eigen::Array2d low = a.array().min((a + edge).array()), high = a.array().max((a + edge).array());
+  const Eigen::Array2i first = (low - reach).floor().cast<int>().max(0);
+  const Eigen::Array2i last =
+      (high + reach).floor().cast<int>().min(Eigen::Array2i(picture.width - 1, picture.height - 1));
+  for (int y = first[1]; y <= last[1]; ++y) {
+    for (int x = first[0]; x <= last[0]; ++x) {
+      const Eigen::Vector2d way = Eigen::Vector2d(x + 0.5, y + 0.5) - a;
+      const double along = std::clamp(way.dot(edge) / edge.squaredNorm(), 0.0, 1.0);
+      if ((way - along * edge).norm() > reach) continue;
+      texels[static_cast<std::size_t>(y) * picture.width + x] = HitMap::ask;
     }
   }
 }

@@ -25,9 +25,14 @@ struct PlanePicture {
 PlanePicture plane_picture(const Occluders& occluders, std::span<const int> triangles, const Vec3& front,
                            double texels);
 
-/// Writes into each texel the patch at its centre; beside the outline the nearest; and HitMap::ask where that
-/// would leave some patch without a texel, or where nothing is near.
+/// Writes into each texel the patch at some point of it, so that patches have their share of the texels on
+/// edges; beside the outline the nearest; and HitMap::ask where that would leave some patch without a texel,
+/// or where nothing is near.
 void draw_patches(const PatchMesh& mesh, std::span<const int> patches, const PlanePicture& picture,
                   std::span<std::int32_t> texels);
+
+/// Writes HitMap::ask into each texel that the segment between two points crosses.
+void draw_doubt(const PlanePicture& picture, const Vec3& from, const Vec3& to,
+                std::span<std::int32_t> texels);
 
 }  // namespace luxel

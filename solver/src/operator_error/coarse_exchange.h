@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/LU>
+
+#include "luxel/gather_operator.h"
+
+namespace luxel {
+
+/// Exchange between a few parts of the surface, from what rays met.
+struct CoarseExchange {
+  Eigen::MatrixXd form_factors;  ///< F_IJ
+  std::vector<double> areas;     ///< of the parts [m2]
+  double reciprocity_error = 0;  ///< Frobenius norm of A_I F_IJ - A_J F_JI relative to that of A_I F_IJ
+};
+
+/// @param part   N: of each patch, 0 .. parts - 1
+CoarseExchange coarse_exchange(const GatherOperator& transport, const std::vector<std::int32_t>& part,
+                               int parts);
+
+}  // namespace luxel

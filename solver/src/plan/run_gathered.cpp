@@ -1,0 +1,166 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "luxel/input_error.h"
+#include "luxel/plan.h"
+#include "operator_error/coarse_exchange.h"
+#include "operator_error/probed_error.h"
+#include "operator_error/strata.h"
+#include "plan/cost_model.h"
+#include "plan/decisions.h"
+#include "plan/gathered_enclosures.h"
+#include "plan/solved_channels.h"
+#include "transport/gather/gathered_light.h"
+
+namespace luxel {
+
+namespace {
+
+// Where nothing emits, rays are cast only to tell the enclosures.
+constexpr int least_rays = 16;
+
+// Rays that the error bar may take, as a share of those of the gather: below a fifth of the run with what
+// strata and exchange cost.
+constexpr double error_bar_share = 0.12;
+
+// Parts of the scene between which reciprocity is looked at.
+constexpr int reciprocity_parts = 64;
+
+/// Whether nothing is absorbed and all is dark: solve() has to be asked whether that is singular.
+std::vector<char> lossless_channels(const PatchField& rho) {
+  std::vector<char> lossless(rho.cols());
+  for (Eigen::Index c = 0; c < rho.cols(); ++c) lossless[c] = (rho.col(c).array() >= 1 - smallest_loss).all();
+  return lossless;
+}
+
+double reciprocity_error(const GatherOperator& stored) {
+  const Strata strata(stored.packets(), {stored.areas().begin(), stored.areas().end()}, reciprocity_parts);
+  return coarse_exchange(stored, strata.of_patch(), reciprocity_parts).reciprocity_error;
+}
+
+Energy energy_of(const PatchMesh& mesh, const PatchField& rho, const PatchField& emitted,
+                 const RadiositySolution& light, const std::vector<double>& row_sums) {
+  Energy energy;
+  energy.emitted = energy.absorbed = energy.escaped = Eigen::RowVectorXd::Zero(emitted.cols());
+  for (int i = 0; i < mesh.size(); ++i) {
+    energy.emitted += mesh.areas[i] * emitted.row(i);
+    energy.absorbed += mesh.areas[i] * light.irradiance.row(i).cwiseProduct(
+                                           Eigen::RowVectorXd::Ones(rho.cols()) - rho.row(i));
+    energy.escaped += mesh.areas[i] * (1 - row_sums[i]) * light.radiosity.row(i);
+  }
+  for (Eigen::Index c = 0; c < emitted.cols(); ++c) {
+    if (energy.emitted[c] == 0) continue;
+    const double missing = std::abs(energy.emitted[c] - energy.absorbed[c] - energy.escaped[c]);
+    energy.imbalance = std::max(energy.imbalance, missing / energy.emitted[c]);
+  }
+  return energy;
+}
+
+GatherOptions gather_options(const PlanOptions& options) {
+  GatherOptions gather;
+  gather.accuracy = options.form_factors.accuracy;
+  gather.seed = options.form_factors.seed;
+  gather.keep_partial = options.keep_partial;
+  return gather;
+}
+
+}  // namespace
+
+GatheredRun run_gathered(const PatchMesh& mesh, const PlanOptions& options, const PlanListener& listener) {
+  const auto enter = [&](PlanStage stage) {
+    if (listener.on_stage) listener.on_stage(stage);
+  };
+  enter(PlanStage::assembling);
+  const PatchField rho = reflectance(mesh), emitted = emission(mesh);
+  const ChannelPlan channels = options.savings.channels ? plan_channels(rho, emitted, lossless_channels(rho))
+                                                        : every_channel(static_cast<int>(rho.cols()));
+  GatheredRun run;
+  PlannedSolution& planned = run.light;
+  note(run.left_out, dark_channels(channels, mesh.size()));
+  note(run.left_out, equal_channels(channels, mesh.size()));
+  if (options.savings.channels) note(run.left_out, black_patches(rho));
+  const RayScene occluders(mesh.occluders);
+  if (channels.solved.empty()) {
+    planned.solution = {emitted, PatchField::Zero(mesh.size(), rho.cols()), {}};
+    planned.solution.report.method = Method::neumann;
+    planned.solution.report.converged = true;
+    planned.solution.report.error_bound = 0;
+    planned.row_sums.assign(mesh.size(), std::numeric_limits<double>::quiet_NaN());
+    run.enclosures = find_enclosures(mesh, occluders, least_rays, listener.progress);
+    planned.energy = energy_of(mesh, rho, emitted, planned.solution, std::vector<double>(mesh.size(), 1.0));
+    enter(PlanStage::done);
+    return run;
+  }
+
+  SolveOptions solving = options.solve;
+  if (solving.on_iteration) {
+    solving.on_iteration = [&, tell = options.solve.on_iteration](const Iteration& iteration) {
+      Iteration told = iteration;
+      PatchField whole;
+      if (iteration.radiosity && channels.solved.size() < channels.source.size()) {
+        whole = expanded(*iteration.radiosity, channels);
+        told.radiosity = &whole;
+      }
+      return tell(told);
+    };
+  }
+  // a million patches: fields are kept once
+  const bool all_solved = channels.solved.size() == channels.source.size();
+  PatchField rho_part, emitted_part;
+  if (!all_solved) {
+    rho_part = rho(Eigen::all, channels.solved);
+    emitted_part = emitted(Eigen::all, channels.solved);
+  }
+  const PatchField& rho_solved = all_solved ? rho : rho_part;
+  const PatchField& emitted_solved = all_solved ? emitted : emitted_part;
+  GatheredLight light =
+      gather_light(mesh, occluders, rho_solved, emitted_solved, gather_options(options), solving,
+                   listener.progress, [&](GatherStage stage) {
+                     enter(stage == GatherStage::rays ? PlanStage::assembling : PlanStage::solving);
+                   });
+  run.gather = light.solution.report;
+  run.enclosures = gathered_enclosures(*light.stored, light.solution.row_sums,
+                                       run.gather.partial ? light.stored->rays() : run.gather.plan.rays);
+  planned.row_sums = std::move(light.solution.row_sums);
+  planned.operator_bytes = run.gather.bytes;
+  planned.rays = run.gather.rays + run.gather.shadow_rays;
+  planned.reciprocity_error = reciprocity_error(*light.stored);
+
+  if (options.error_bar && !run.gather.partial) {
+    enter(PlanStage::measuring);
+    OperatorErrorOptions probing;
+    probing.accuracy = options.form_factors.accuracy;
+    probing.seed = options.form_factors.seed;
+    probing.most_rays = error_bar_share * static_cast<double>(planned.rays);
+    try {
+      planned.operator_error =
+          probed_error(mesh, occluders, *light.rays, *light.stored, rho_solved, emitted_solved,
+                       light.solution.light, planned.row_sums, probing, listener.progress);
+    } catch (const Cancelled&) {
+      if (!options.keep_partial) throw;
+    }
+  }
+  planned.solution.report = std::move(light.solution.light.report);
+  RadiositySolution& found = light.solution.light;
+  planned.solution.radiosity = all_solved ? std::move(found.radiosity) : expanded(found.radiosity, channels);
+  planned.solution.irradiance =
+      all_solved ? std::move(found.irradiance) : expanded(found.irradiance, channels);
+  planned.energy = energy_of(mesh, rho, emitted, planned.solution, planned.row_sums);
+  enter(PlanStage::done);
+  return run;
+}
+
+Cost estimated_gather_cost(const PatchMesh& mesh, const PlanOptions& options) {
+  const PatchField emitted = emission(mesh);
+  const GatherPlan plan = gather_plan(mesh, emitted, gather_options(options));
+  const double patches = mesh.size(), triangles = static_cast<double>(mesh.occluders.triangles.size());
+  Cost cost;
+  cost.cpu_seconds = mesh_seconds(patches) + gather_seconds(patches, plan.rays, triangles);
+  if (options.error_bar) cost.cpu_seconds *= 1 + error_bar_share;
+  cost.bytes = gather_bytes(patches, triangles) + static_cast<double>(plan.bytes);
+  return cost;
+}
+
+}  // namespace luxel
