@@ -217,8 +217,8 @@ void add_comparison(CLI::App& app, CompareCommand& compare) {
   app.add_flag(
          "--operators", compare.operators,
          wrapped(
-             "Also compare on a gathered, a coarser and a finer operator (accuracy x 10 and / 10), and with "
-             "half and twice the patches",
+             "Also compare on operators by rays and by clusters, on a coarser and a finer one (accuracy x 10 "
+             "and / 10), and with half and twice the patches",
              description_width))
       ->group(transport);
   app.add_flag("--wall", compare.wall_time, "Plot errors against wall time instead of CPU time")

@@ -10,6 +10,7 @@
 #include "compare/reference_file.h"
 #include "interruption.h"
 #include "luxel/gather_operator.h"
+#include "luxel/hierarchical_operator.h"
 #include "luxel/input_error.h"
 #include "luxel/write_file.h"
 #include "output_files.h"
@@ -24,8 +25,9 @@ namespace {
 // Light settings beside the scene's own, for the work-precision table: one, and ten sets of three channels.
 constexpr int few_columns = 1, many_columns = 30;
 
-// A gathered operator that is kept as a whole is not asked for more than this: it takes 40 kB a patch.
-constexpr double finest_gathered = 1e-3;
+// Operators by rays and by clusters are not asked for more than this: kept as a whole, gathered rays take 40
+// kB a patch.
+constexpr double finest_sampled = 1e-3;
 
 // The scene's channels again and again, each time with other weights, so that no two right-hand sides are
 // alike.
@@ -123,7 +125,7 @@ ComparedSystem system_of(const Assembly& assembly, double accuracy) {
 void add_gathered(compare::Comparison& comparison, const PatchMesh& mesh, const CompareCommand& command,
                   const Progress& progress) {
   GatherOptions options;
-  options.accuracy = std::max(command.transport.form_factors.accuracy, finest_gathered);
+  options.accuracy = std::max(command.transport.form_factors.accuracy, finest_sampled);
   options.seed = command.transport.form_factors.seed;
   const RayScene occluders(mesh.occluders);
   const PatchField rho = reflectance(mesh), emitted = emission(mesh);
@@ -131,6 +133,17 @@ void add_gathered(compare::Comparison& comparison, const PatchMesh& mesh, const 
   const DirectLight direct = direct_irradiance(mesh, occluders, emitted, options, progress);
   add_other(comparison, {*transport, options.accuracy, rho, rho.cwiseProduct(direct.irradiance), emitted},
             command);
+}
+
+void add_hierarchical(compare::Comparison& comparison, const Assembly& assembly,
+                      const CompareCommand& command, const Progress& progress) {
+  HierarchicalOptions options;
+  options.accuracy = std::max(command.transport.form_factors.accuracy, finest_sampled);
+  options.seed = command.transport.form_factors.seed;
+  const PatchField rho = reflectance(assembly.mesh), emitted = emission(assembly.mesh);
+  const auto transport =
+      hierarchical_operator(assembly.mesh, assembly.record.enclosures, rho, emitted, options, progress);
+  add_other(comparison, {*transport, options.accuracy, rho, emitted, {}}, command);
 }
 
 }  // namespace
@@ -141,7 +154,8 @@ ExitStatus run(const CompareCommand& command) {
   Report report = new_report("compare");
   ProgressBar bar(!command.general.quiet);
 
-  // with --operators also a gathered, a coarser and a finer operator, and half and twice the patches
+  // with --operators also operators by rays and by clusters, a coarser and a finer one, and half and twice
+  // the patches
   compare::Comparison comparison;
   comparison.scene = command.scene.file;
   const Assembly assembly =
@@ -154,6 +168,7 @@ ExitStatus run(const CompareCommand& command) {
   add_first(comparison, first, command);
   if (command.operators) {
     add_gathered(comparison, assembly.mesh, command, std::ref(bar));
+    add_hierarchical(comparison, assembly, command, std::ref(bar));
     for (double factor : {10.0, 0.1}) {
       OperatorOptions options = command.transport;
       options.form_factors.accuracy = std::clamp(accuracy * factor, 1e-8, 0.1);

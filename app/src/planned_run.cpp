@@ -183,6 +183,7 @@ void PlannedRun::report_solver(const PlannedSolution& light, Report& report) con
   figures.converged = solved.converged;
   figures.relative_residual = solved.relative_residual;
   figures.error_bound = solved.error_bound;
+  if (solved.condition_estimate > 0) figures.condition_estimate = solved.condition_estimate;
   figures.cpu_seconds = solving_.cpu;
   figures.wall_seconds = solving_.wall;
   figures.message = solved.message;

@@ -23,6 +23,7 @@ Report solved() {
   report.solver->method = "cg";
   report.solver->converged = true;
   report.solver->relative_residual = 1.0 / 3;
+  report.solver->condition_estimate = 3.5;
   report.solver->error_bound = std::numeric_limits<double>::infinity();
   report.solver->history = {{0, 0, 0, 1, not_known}, {1, 0.5, 0.25, 0.125, 0.0625}};
   report.energy.emplace();
@@ -60,6 +61,7 @@ TEST(ReportJson, WhatIsNotAFiniteNumberIsNull) {
   const Json document = Json::parse(to_json(solved()));
 
   EXPECT_TRUE(document["solver"]["error_bound"].is_null());
+  EXPECT_EQ(document["solver"]["condition_estimate"], 3.5);
   EXPECT_TRUE(document["operator"]["row_sum_error"]["rms"].is_null());
   EXPECT_TRUE(document["error"]["operator"]["estimate"].is_null());
   EXPECT_TRUE(document["error"]["discretisation"].is_null());

@@ -69,6 +69,7 @@ struct Report {
     bool converged = false;
     double relative_residual = not_known;
     double error_bound = not_known;
+    double condition_estimate = not_known;  ///< of the symmetric system, where conjugate gradients solved it
     double cpu_seconds = 0;
     double wall_seconds = 0;
     std::string message;  ///< one sentence where there is something to say: why there is no bound, ...

@@ -68,6 +68,7 @@ Json json(const Report::Solver& solver) {
                  {"converged", solver.converged},
                  {"relative_residual", number(solver.relative_residual)},
                  {"error_bound", number(solver.error_bound)},
+                 {"condition_estimate", number(solver.condition_estimate)},
                  {"cpu_seconds", number(solver.cpu_seconds)},
                  {"wall_seconds", number(solver.wall_seconds)}};
   if (!solver.message.empty()) result["message"] = solver.message;
