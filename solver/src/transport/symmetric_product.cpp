@@ -79,7 +79,8 @@ void corner(const ExchangeMatrix& matrix, int begin, int end, int from, const do
 template <class Real, int Columns>
 void rows(const ExchangeMatrix& matrix, RowBlock block, const double* x, double* y, std::size_t stride) {
   // as many rows at once as the registers hold sums, own values and entries for
-  constexpr int together = Columns == 1 || HWY_MAX_BYTES >= 64 ? 4 : 2;
+  constexpr bool many_registers = HWY_MAX_BYTES >= 64;
+  constexpr int together = Columns == 1 ? (many_registers ? 8 : 4) : (many_registers ? 4 : 2);
   for (int band = block.begin; band < block.end; band += 8) {
     const int end = std::min(band + 8, block.end);
     int row = band;
