@@ -123,7 +123,9 @@ TEST(Operator, IsChosenByCostAndMemory) {
 
   EXPECT_NE(large["operator"]["kind"], "dense");
   EXPECT_FALSE(large["operator"]["candidates"][0]["fits"]);
+#ifndef __SANITIZE_ADDRESS__  // whose own memory is twice the program's
   EXPECT_LT(large["peak_bytes"], 120 << 20);
+#endif
 }
 
 TEST(Operator, GivesTheSameBitsForOneAndTwoThreads) {
