@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "luxel/form_factors.h"
 #include "luxel/gather_operator.h"
 #include "solver/gather_scenes.h"
 #include "transport/gather/lamps.h"
@@ -46,6 +47,22 @@ TEST(DirectIrradiance, OfAnUnoccludedLampIsTheClosedForm) {
 
   // the patch is small: its mean differs from its middle by about s^2 = 1e-6; offsets of float are 1e-6 too
   EXPECT_NEAR(light_on_first(mesh, glow(mesh, {1}, 3)), 3 * 4 * below_a_corner(1, 1, 1), 3e-5);
+}
+
+// A ceiling that reaches far behind an upright patch: only a thirtieth of it is in sight.
+TEST(DirectIrradiance, OfALampThatLiesMostlyBehindIsTheClosedForm) {
+  const double s = 0.01;
+  const std::vector<Vec3> ceiling{Vec3(-29, -1, 1), Vec3(-29, 1, 1), Vec3(1, 1, 1), Vec3(1, -1, 1)};
+  const std::vector<Vec3> triangle{Vec3(-29, -1, 1), Vec3(-29, 1, 1), Vec3(1, 1, 1)};
+  for (const auto& lamp : {ceiling, triangle}) {
+    std::vector<Vec3> vertices{Vec3(0, -s, -s), Vec3(0, s, -s), Vec3(0, s, s), Vec3(0, -s, s)};
+    vertices.insert(vertices.end(), lamp.begin(), lamp.end());
+    const PatchMesh mesh = hand_made_mesh(vertices, {{0, 1, 2, 3}, {4, 5, 6, lamp.size() == 4 ? 7 : -1}});
+
+    // the mean over the patch differs from its middle by about s^2
+    EXPECT_NEAR(light_on_first(mesh, glow(mesh, {1})), point_form_factor(Vec3::Zero(), Vec3::UnitX(), lamp),
+                1e-4);
+  }
 }
 
 TEST(DirectIrradiance, DoesNotDependOnHowTheLampIsCut) {

@@ -37,6 +37,44 @@ float dot(const Point& a, const Point& b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
+// The part of a lamp's frame, in its own coordinates, around what lies above the plane of a patch: of a lamp
+// that reaches far behind the patch, points of the whole frame would hardly meet what the patch sees.
+struct Window {
+  double s = 0, t = 0, width = 1, height = 1;
+  bool whole = true;
+};
+
+Window window_above(const PatchFrame& patch, const Lamp& lamp) {
+  const auto height = [&](const Vec3& x) { return patch.normal.dot(x - patch.corner); };
+  const double aa = lamp.along.squaredNorm(), uu = lamp.up.squaredNorm(), au = lamp.along.dot(lamp.up);
+  const double determinant = aa * uu - au * au;
+  double low_s = 1, low_t = 1, high_s = 0, high_t = 0;
+  bool cut = false;
+  const auto include = [&](const Vec3& x) {
+    const Vec3 from = x - lamp.corner;
+    const double a = from.dot(lamp.along), u = from.dot(lamp.up);
+    const double s = (a * uu - u * au) / determinant, t = (u * aa - a * au) / determinant;
+    low_s = std::min(low_s, s);
+    low_t = std::min(low_t, t);
+    high_s = std::max(high_s, s);
+    high_t = std::max(high_t, t);
+  };
+  for (const auto& [from, to] : lamp.outline) {
+    const double here = height(from), there = height(to);
+    cut = cut || here < 0;
+    if (here > 0) include(from);
+    if ((here > 0) != (there > 0)) include(from + here / (here - there) * (to - from));
+  }
+  Window window;
+  if (!cut || !(determinant > 0)) return window;
+  window.s = std::clamp(low_s, 0.0, 1.0);
+  window.t = std::clamp(low_t, 0.0, 1.0);
+  window.width = std::clamp(high_s, 0.0, 1.0) - window.s;
+  window.height = std::clamp(high_t, 0.0, 1.0) - window.t;
+  window.whole = !(window.width > 0 && window.height > 0);
+  return window.whole ? Window() : window;
+}
+
 void fold(float& s, float& t) {
   const float half_s = s / 2, half_t = t / 2;
   const bool above = t > s;
@@ -58,7 +96,12 @@ LampView ShadowRays::view(const PatchFrame& patch, const Lamp& lamp, int count, 
   const auto share = static_cast<float>(patch.share);
   std::array<std::uint32_t, 4> seeds;
   for (int d = 0; d < 4; ++d) seeds[d] = static_cast<std::uint32_t>(mixed_seed(seed, d));
-  const int points = static_cast<int>(std::ceil(count * std::min(most_points, 1 / lamp.filled)));
+  const Window window = window_above(patch, lamp);
+  const auto low_u = static_cast<float>(window.s), low_v = static_cast<float>(window.t);
+  const auto width = static_cast<float>(window.width), height = static_cast<float>(window.height);
+  // how much of a window is lamp is not known: rays are counted instead
+  const int points = static_cast<int>(
+      std::ceil(count * (window.whole ? std::min(most_points, 1 / lamp.filled) : most_points)));
 
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
@@ -69,7 +112,7 @@ LampView ShadowRays::view(const PatchFrame& patch, const Lamp& lamp, int count, 
   const LaineKarras scramble;
   LampView result;
   double all = 0, lit = 0;
-  for (int begin = 0; begin < points; begin += packet) {
+  for (int begin = 0; begin < points && (window.whole || result.rays < count); begin += packet) {
     int active = 0;
     for (int k = 0; k < packet; ++k) {
       const std::uint32_t* words = &words_[4 * static_cast<std::size_t>(begin + k)];
@@ -82,11 +125,17 @@ LampView ShadowRays::view(const PatchFrame& patch, const Lamp& lamp, int count, 
       s = in_first ? s / share : (s - share) / (1 - share);
       fold(s, t);
       const Point from = moved(corner, s, in_first ? first : second, t, in_first ? second : third);
-      if (lamp.triangle) fold(u, v);
+      if (window.whole) {
+        if (lamp.triangle) fold(u, v);
+      } else {
+        u = low_u + u * width;
+        v = low_v + v * height;
+      }
       const Point to = moved(lamp_corner, u, along, v, up);
       const Point way = {to.x - from.x, to.y - from.y, to.z - from.z};
       const float square = dot(way, way), cosine = dot(way, normal), lamp_cosine = -dot(way, lamp_normal);
-      const bool faces = begin + k < points && cosine > 0 && lamp_cosine > 0 &&
+      const bool beyond = lamp.triangle && u + v > 1;
+      const bool faces = begin + k < points && cosine > 0 && lamp_cosine > 0 && !beyond &&
                          (lamp.fills_frame || lamp.holds(lamp.corner + u * lamp.along + v * lamp.up));
       weights[k] = faces ? cosine * lamp_cosine / (square * square) : 0;
       valid[k] = faces ? -1 : 0;
