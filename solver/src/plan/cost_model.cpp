@@ -38,7 +38,7 @@ constexpr double pair_digit = 1.3;
 
 // A pair that is clipped, and one that rays decide.
 constexpr double clipped_pair = 2.5e-6;
-constexpr double crowded_pair = 4e-6;
+constexpr double crowded_pair = 1.8e-6;
 
 // Passes over the matrix that close_rows() takes.
 constexpr double closure_passes = 40;
