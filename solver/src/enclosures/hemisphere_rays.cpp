@@ -30,6 +30,11 @@ double clearance(const PatchMesh& mesh, int patch) {
 
 }  // namespace
 
+double drawn_in(const PatchMesh& mesh, int patch, double margin) {
+  const double room = clearance(mesh, patch);
+  return room > margin ? margin / room : 1;
+}
+
 HemisphereRays hemisphere_rays(const PatchMesh& mesh, int patch, int count, std::uint64_t seed,
                                double margin) {
   const auto& corners = mesh.corners[patch];
@@ -42,8 +47,7 @@ HemisphereRays hemisphere_rays(const PatchMesh& mesh, int patch, int count, std:
   const Vec3& normal = mesh.normals[patch];
   const Vec3 tangent = normal.unitOrthogonal();
   const Vec3 bitangent = normal.cross(tangent);
-  const double room = clearance(mesh, patch);
-  const double shrink = room > margin ? margin / room : 1;
+  const double shrink = drawn_in(mesh, patch, margin);
 
   HemisphereRays rays;
   rays.origins.reserve(count);

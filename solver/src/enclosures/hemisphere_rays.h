@@ -14,6 +14,10 @@ struct HemisphereRays {
   std::vector<Vec3> origins, normals, directions;
 };
 
+/// The share of their way to the centroid by which the points of a patch are drawn in for that, in (0, 1]: 1
+/// where the patch is narrower than the margin.
+double drawn_in(const PatchMesh& mesh, int patch, double margin);
+
 HemisphereRays hemisphere_rays(const PatchMesh& mesh, int patch, int count, std::uint64_t seed,
                                double margin);
 

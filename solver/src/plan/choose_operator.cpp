@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "luxel/plan.h"
+#include "plan/decisions.h"
 
 namespace luxel {
 
@@ -22,14 +23,7 @@ Cost dense_cost(const PatchMesh& mesh, const PlanOptions& options) {
     const double n = mesh.size(), pairs = n * (n - 1) / 2;
     return {least_pair_seconds * pairs, 4 * pairs};
   }
-  Enclosures one;
-  one.closed = true;
-  one.count = 1;
-  one.enclosure.assign(mesh.size(), 0);
-  one.enclosure_closed = {1};
-  one.open_share.assign(mesh.size(), 0.0);
-  one.back_share.assign(mesh.size(), 0.0);
-  one.share_error.assign(mesh.size(), 0.0);
+  const Enclosures one = one_closed_enclosure(mesh.size());
   return estimated_cost(make_plan(mesh, one, options), mesh, one, options);
 }
 

@@ -134,6 +134,18 @@ std::optional<LeftOut> black_patches(const PatchField& reflectance) {
                  "their reflectance is 0, so that B = E", count(black, "unknown")};
 }
 
+Enclosures one_closed_enclosure(int patches) {
+  Enclosures one;
+  one.closed = true;
+  one.count = 1;
+  one.enclosure.assign(patches, 0);
+  one.enclosure_closed = {1};
+  one.open_share.assign(patches, 0.0);
+  one.back_share.assign(patches, 0.0);
+  one.share_error.assign(patches, 0.0);
+  return one;
+}
+
 void note(std::vector<LeftOut>& list, std::optional<LeftOut> decision) {
   if (decision) list.push_back(std::move(*decision));
 }

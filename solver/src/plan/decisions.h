@@ -28,6 +28,9 @@ std::optional<LeftOut> equal_channels(const ChannelPlan& channels, int patches);
 /// singular.
 inline constexpr double smallest_loss = 1e-11;
 
+/// All of so many patches as one closed enclosure.
+Enclosures one_closed_enclosure(int patches);
+
 /// Adds a decision if there is one.
 void note(std::vector<LeftOut>& list, std::optional<LeftOut> decision);
 

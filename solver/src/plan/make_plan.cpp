@@ -184,15 +184,7 @@ Enclosures planned_enclosures(const PatchMesh& mesh, const PlanOptions& options,
   if (!options.savings.idle_occluders || !convex_inside(mesh)) {
     return find_enclosures(mesh, RayScene(mesh.occluders), rays_per_patch, progress);
   }
-  Enclosures one;
-  one.closed = true;
-  one.count = 1;
-  one.enclosure.assign(mesh.size(), 0);
-  one.enclosure_closed = {1};
-  one.open_share.assign(mesh.size(), 0.0);
-  one.back_share.assign(mesh.size(), 0.0);
-  one.share_error.assign(mesh.size(), 0.0);
-  return one;
+  return one_closed_enclosure(mesh.size());
 }
 
 }  // namespace luxel
