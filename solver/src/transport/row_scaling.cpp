@@ -102,7 +102,7 @@ RowScaling scale_rows(const SymmetricProduct& product, std::span<const double> a
     const Vector gradient = mask.cwiseProduct(s - a);
     // solved as far as the quadratic step can use it
     const Vector positive = s.cwiseMax(1e-300);
-    Vector step = newton_step(product, d, positive, mask, -gradient, std::clamp(0.1 * error, 1e-10, 0.05));
+    Vector step = newton_step(product, d, positive, mask, -gradient, std::clamp(error, 1e-10, 0.05));
     const double longest = step.cwiseAbs().maxCoeff();
     if (longest > 1) step /= longest;
 
