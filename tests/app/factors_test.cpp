@@ -101,6 +101,19 @@ TEST(Factors, AreComputedAgainWhereClosedRowsAreWorseThanAsked) {
   }
 }
 
+// Walls of an L-shaped room that see each other past its inner corner, which both walls there hide together:
+// F = 0.0328902 and 0.0986707 by the algebra of rectangles (Pinney and Bean)
+TEST(Factors, WallsAroundACornerHaveTheirExactFactor) {
+  EXPECT_NEAR(between_groups("lroom_pinney_bean", "srf1", "srf5"), 0.032890247563088, 1e-6 * 0.033);
+  EXPECT_NEAR(between_groups("lroom_pinney_bean", "srf2", "srf6"), 0.098670742689264, 1e-6 * 0.099);
+}
+
+// A triangle 1 x 1e-5 below a unit square: rays for its share of sky start from its middle, which must not
+// count against its exact row.
+TEST(Factors, SliversDoNotFailForTheirShareOfSky) {
+  EXPECT_NEAR(between_groups("vf_sliver_100000", "surf1", "surf2"), 0.51666988823, 1e-6 * 0.52);
+}
+
 TEST(Factors, TableOfGroupsGoesToStdout) {
   const Outcome outcome = luxel({"factors", mesh("cube"), "--as-is", "--by", "group"});
 
