@@ -11,26 +11,6 @@ namespace {
 
 using nlohmann::json;
 
-struct Solved {
-  Outcome outcome;
-  json report;
-  std::string csv;
-};
-
-Solved solve(const std::string& scene, std::vector<std::string> options) {
-  const Folder folder;
-  std::vector<std::string> arguments = {"solve", folder.write("scene.json", scene), "--json", "-o",
-                                        folder.path("out.csv")};
-  arguments.insert(arguments.end(), options.begin(), options.end());
-  Solved solved;
-  solved.outcome = luxel(arguments);
-  EXPECT_LE(solved.outcome.status, 1) << solved.outcome.err;
-  if (solved.outcome.status > 1) return solved;
-  solved.report = json::parse(solved.outcome.out);
-  solved.csv = folder.read("out.csv");
-  return solved;
-}
-
 std::string furnace(double reflectance) {
   const json finish = {{"reflectance", reflectance}, {"exitance", {1, 2, 3}}};
   return scene_text("room_with_block", {{"white", finish}});
@@ -130,15 +110,17 @@ TEST(Operator, IsChosenByCostAndMemory) {
 
 TEST(Operator, GivesTheSameBitsForOneAndTwoThreads) {
   for (const char* kind : {"gather", "hierarchical"}) {
-    const std::vector<std::string> options = {"--operator", kind,   "--patches",        "400",
-                                              "--accuracy", "0.03", "--full-precision", "--threads"};
+    const std::vector<std::string> options = {"--operator", kind,   "--patches", "400",
+                                              "--accuracy", "0.03", "--threads"};
     const auto with_threads = [&](const char* count) {
       auto all = options;
       all.push_back(count);
       return solve(lit_room(), all).csv;
     };
 
-    EXPECT_EQ(with_threads("1"), with_threads("2")) << kind;
+    const std::string one = with_threads("1");
+    EXPECT_FALSE(one.empty());
+    EXPECT_EQ(one, with_threads("2")) << kind;
   }
 }
 

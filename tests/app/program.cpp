@@ -91,6 +91,21 @@ std::vector<std::string> Folder::files() const {
   return names;
 }
 
+Solved solve(const std::string& scene_text, const std::vector<std::string>& options) {
+  const Folder folder;
+  std::vector<std::string> arguments = {
+      "solve",           folder.write("scene.json", scene_text), "--json", "-o", folder.path("out.csv"),
+      "--full-precision"};
+  arguments.insert(arguments.end(), options.begin(), options.end());
+  Solved solved;
+  solved.outcome = luxel(arguments);
+  if (solved.outcome.status <= 1) {
+    solved.report = nlohmann::json::parse(solved.outcome.out);
+    solved.csv = folder.read("out.csv");
+  }
+  return solved;
+}
+
 std::string mesh(const std::string& name) {
   return std::string(LUXEL_TEST_DATA) + "/obj/" + name + ".obj";
 }

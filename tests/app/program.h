@@ -41,6 +41,15 @@ class Folder {
   std::filesystem::path folder_;
 };
 
+/// A run of `luxel solve`: its JSON report and its patches with 17 digits, both empty where it was refused.
+struct Solved {
+  Outcome outcome;
+  nlohmann::json report;
+  std::string csv;
+};
+
+Solved solve(const std::string& scene_text, const std::vector<std::string>& options);
+
 /// Path of one of the meshes in tests/data/obj.
 std::string mesh(const std::string& name);
 

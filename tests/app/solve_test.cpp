@@ -10,26 +10,6 @@ namespace {
 
 using nlohmann::json;
 
-struct Solved {
-  Outcome outcome;
-  json report;
-  std::string csv;
-};
-
-Solved solve(const std::string& scene, std::vector<std::string> options) {
-  const Folder folder;
-  std::vector<std::string> arguments = {
-      "solve", folder.write("scene.json", scene), "--json", "-o", folder.path("out.csv"), "--full-precision"};
-  arguments.insert(arguments.end(), options.begin(), options.end());
-  Solved solved;
-  solved.outcome = luxel(arguments);
-  if (solved.outcome.status <= 1) {
-    solved.report = json::parse(solved.outcome.out);
-    solved.csv = folder.read("out.csv");
-  }
-  return solved;
-}
-
 Solved solve_exactly(const std::string& scene) {
   return solve(scene, {"--as-is", "--accuracy", "1e-6", "--tolerance", "1e-12"});
 }
