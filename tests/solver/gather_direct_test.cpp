@@ -93,6 +93,17 @@ TEST(DirectIrradiance, OfALampThatTouchesOrPiercesThePatchIsTheClosedForm) {
   }
 }
 
+// Of a floor patch only a strip of a hundredth lies in front of the lamp that stands on it.
+TEST(DirectIrradiance, OnAPatchMostlyBehindTheLampIsTheClosedForm) {
+  const double strip = 0.01, height = 0.1;
+  const PatchMesh mesh =
+      hand_made_mesh({Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0), Vec3(0, 1 - strip, 0),
+                      Vec3(0, 1 - strip, height), Vec3(1, 1 - strip, height), Vec3(1, 1 - strip, 0)},
+                     {{0, 1, 2, 3}, {4, 5, 6, 7}});
+
+  EXPECT_NEAR(light_on_first(mesh, glow(mesh, {1})) / (strip * around_a_corner(strip, height)), 1, 5e-4);
+}
+
 TEST(DirectIrradiance, DoesNotDependOnHowTheLampIsCut) {
   const PatchMesh whole = square_below_a_lamp(1), cut = square_below_a_lamp(7);
 

@@ -16,12 +16,12 @@ namespace {
 // each triangle do down to the second distance, and nearer the patch is cut smaller.
 constexpr double far = 30, near = 2;
 
-// Three points of a triangle and twelve that differ by less are believed: the twelve are then right to a
-// tenth of it, far below the noise of any gather.
-constexpr double settled = 2e-3;
+// Three points of a triangle and three in each of its halves that differ by less are believed; the latter are
+// then right to a fraction of it, far below the noise of any gather.
+constexpr double settled = 1e-3;
 
-// Halvings of a side: a lamp that touches a patch is resolved to 1/256 of it.
-constexpr int most_halvings = 8;
+// Of the longest edge: a lamp that touches a patch is resolved to 1/256 of it.
+constexpr int most_halvings = 16;
 
 /// Triangles repeat their last.
 std::array<Vec3, 4> corners_of(const PatchFrame& patch) {
@@ -55,18 +55,21 @@ class MeanFormFactor {
 
  private:
   double by_halving(const Triangle& x, double coarse, int halvings) const {
-    const Vec3 a = (x[0] + x[1]) / 2, b = (x[1] + x[2]) / 2, c = (x[2] + x[0]) / 2;
-    const std::array<Triangle, 4> parts{Triangle{x[0], a, c}, {a, x[1], b}, {c, b, x[2]}, {a, b, c}};
-    std::array<double, 4> means;
-    double mean = 0;
-    for (int k = 0; k < 4; ++k) mean += (means[k] = by_three_points(parts[k])) / 4;
+    int longest = 0;
+    double length = 0;
+    for (int k = 0; k < 3; ++k) {
+      const double edge = (x[(k + 1) % 3] - x[k]).norm();
+      if (edge > length) longest = k, length = edge;
+    }
+    const Vec3 &a = x[longest], &b = x[(longest + 1) % 3], &c = x[(longest + 2) % 3];
+    const Vec3 half = (a + b) / 2;
+    const Triangle first{a, half, c}, second{half, b, c};
+    const double of_first = by_three_points(first), of_second = by_three_points(second);
+    const double mean = (of_first + of_second) / 2;
     // what a lamp sends changes over its own size or its distance
-    const double size = std::sqrt((x[1] - x[0]).cross(x[2] - x[0]).norm() / 2);
-    const bool resolved = near * size <= std::max(smallest_, lamp_.distance((x[0] + x[1] + x[2]) / 3));
+    const bool resolved = length <= std::max(smallest_, lamp_.distance((a + b + c) / 3));
     if (halvings == 0 || (resolved && std::abs(mean - coarse) <= settled * mean)) return mean;
-    mean = 0;
-    for (int k = 0; k < 4; ++k) mean += by_halving(parts[k], means[k], halvings - 1) / 4;
-    return mean;
+    return (by_halving(first, of_first, halvings - 1) + by_halving(second, of_second, halvings - 1)) / 2;
   }
 
   Vec3 normal_;

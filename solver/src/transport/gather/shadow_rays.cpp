@@ -2,10 +2,13 @@
 
 #include <embree3/rtcore.h>
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "form_factors/polygon.h"
 #include "sampling/owen_sobol.h"
 #include "sampling/sobol_words.h"
 
@@ -37,49 +40,79 @@ float dot(const Point& a, const Point& b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
-// The part of a lamp's frame, in its own coordinates, around what lies above the plane of a patch: of a lamp
-// that reaches far behind the patch, points of the whole frame would hardly meet what the patch sees.
-struct Window {
-  double s = 0, t = 0, width = 1, height = 1;
-  bool whole = true;
-};
-
-Window window_above(const PatchFrame& patch, const Lamp& lamp) {
-  const auto height = [&](const Vec3& x) { return patch.normal.dot(x - patch.corner); };
-  const double aa = lamp.along.squaredNorm(), uu = lamp.up.squaredNorm(), au = lamp.along.dot(lamp.up);
-  const double determinant = aa * uu - au * au;
-  double low_s = 1, low_t = 1, high_s = 0, high_t = 0;
-  bool cut = false;
-  const auto include = [&](const Vec3& x) {
-    const Vec3 from = x - lamp.corner;
-    const double a = from.dot(lamp.along), u = from.dot(lamp.up);
-    const double s = (a * uu - u * au) / determinant, t = (u * aa - a * au) / determinant;
-    low_s = std::min(low_s, s);
-    low_t = std::min(low_t, t);
-    high_s = std::max(high_s, s);
-    high_t = std::max(high_t, t);
-  };
-  for (const auto& [from, to] : lamp.outline) {
-    const double here = height(from), there = height(to);
-    cut = cut || here < 0;
-    if (here > 0) include(from);
-    if ((here > 0) != (there > 0)) include(from + here / (here - there) * (to - from));
-  }
-  Window window;
-  if (!cut || !(determinant > 0)) return window;
-  window.s = std::clamp(low_s, 0.0, 1.0);
-  window.t = std::clamp(low_t, 0.0, 1.0);
-  window.width = std::clamp(high_s, 0.0, 1.0) - window.s;
-  window.height = std::clamp(high_t, 0.0, 1.0) - window.t;
-  window.whole = !(window.width > 0 && window.height > 0);
-  return window.whole ? Window() : window;
-}
-
+// The square folded onto a triangle, which keeps neighbours together (Heitz 2019).
 void fold(float& s, float& t) {
   const float half_s = s / 2, half_t = t / 2;
   const bool above = t > s;
   s = above ? half_s : s - half_t;
   t = above ? t - half_s : half_t;
+}
+
+// The part of a flat polygon in front of a plane, and its points by numbers of the unit square: only what
+// lies above each other's horizon can exchange light, and of a patch or a lamp that is mostly behind, points
+// of the whole would hardly meet it.
+class FrontPart {
+ public:
+  /// @param parallelogram  four corners, of which the last is the first plus the third less the second
+  FrontPart(const Polygon& outline, const Plane& plane, bool parallelogram) {
+    whole_ = span_along(outline, plane).low >= 0;
+    const Polygon part = whole_ ? outline : clip(outline, plane, 0);
+    if (whole_ && parallelogram) {
+      add(part[0], part[1], part[3]);
+      square_ = true;
+      return;
+    }
+    std::array<double, most> areas{};
+    double area = 0;
+    for (int k = 0; k + 2 < part.count; ++k) {
+      areas[k] = (part[k + 1] - part[0]).cross(part[k + 2] - part[0]).norm();
+      area += areas[k];
+      add(part[0], part[k + 1], part[k + 2]);
+    }
+    if (!(area > 0)) count_ = 0;
+    for (int k = 0; k < count_; ++k) shares_[k] = static_cast<float>(areas[k] / area);
+  }
+
+  bool empty() const { return count_ == 0; }
+  bool whole() const { return whole_; }
+
+  Point point(float s, float t) const {
+    int k = 0;
+    if (!square_) {
+      for (; k + 1 < count_ && s >= shares_[k]; ++k) s -= shares_[k];
+      s = shares_[k] > 0 ? std::min(s / shares_[k], 1.0F) : 0;
+      fold(s, t);
+    }
+    return moved(triangles_[k].corner, s, triangles_[k].first, t, triangles_[k].second);
+  }
+
+ private:
+  static constexpr int most = 3;  // a quad cut by one plane
+  struct Triangle {
+    Point corner, first, second;
+  };
+
+  void add(const Vec3& corner, const Vec3& first, const Vec3& second) {
+    triangles_[count_++] = {lowered(corner), lowered(first - corner), lowered(second - corner)};
+  }
+
+  int count_ = 0;
+  bool whole_ = false, square_ = false;
+  std::array<Triangle, most> triangles_;
+  std::array<float, most> shares_;
+};
+
+FrontPart front_part(const PatchFrame& patch, const Lamp& lamp) {
+  const Vec3& a = patch.corner;
+  return FrontPart({patch.share < 1 ? 4 : 3, {a, a + patch.first, a + patch.second, a + patch.third}},
+                   {lamp.normal, lamp.offset}, false);
+}
+
+FrontPart front_part(const Lamp& lamp, const PatchFrame& patch) {
+  const Vec3 a = lamp.corner + lamp_offset * lamp.normal, b = a + lamp.along, d = a + lamp.up;
+  const Plane plane{patch.normal, patch.normal.dot(patch.corner)};
+  return lamp.triangle ? FrontPart({3, {a, b, d}}, plane, false)
+                       : FrontPart({4, {a, b, b + lamp.up, d}}, plane, true);
 }
 
 }  // namespace
@@ -89,19 +122,16 @@ ShadowRays::ShadowRays(const RayScene& occluders, int most)
       words_(reversed_sobol_words(static_cast<int>(std::ceil(most * most_points)) + packet)) {}
 
 LampView ShadowRays::view(const PatchFrame& patch, const Lamp& lamp, int count, std::uint64_t seed) const {
-  const Point corner = lowered(patch.corner), first = lowered(patch.first), second = lowered(patch.second),
-              third = lowered(patch.third), normal = lowered(patch.normal);
-  const Point lamp_corner = lowered(lamp.corner + lamp_offset * lamp.normal), along = lowered(lamp.along),
-              up = lowered(lamp.up), lamp_normal = lowered(lamp.normal);
-  const auto share = static_cast<float>(patch.share);
+  LampView result;
+  const FrontPart receiver = front_part(patch, lamp), source = front_part(lamp, patch);
+  if (receiver.empty() || source.empty()) return result;
+  const Point normal = lowered(patch.normal), lamp_normal = lowered(lamp.normal);
   std::array<std::uint32_t, 4> seeds;
   for (int d = 0; d < 4; ++d) seeds[d] = static_cast<std::uint32_t>(mixed_seed(seed, d));
-  const Window window = window_above(patch, lamp);
-  const auto low_u = static_cast<float>(window.s), low_v = static_cast<float>(window.t);
-  const auto width = static_cast<float>(window.width), height = static_cast<float>(window.height);
-  // how much of a window is lamp is not known: rays are counted instead
-  const int points = static_cast<int>(
-      std::ceil(count * (window.whole ? std::min(most_points, 1 / lamp.filled) : most_points)));
+  // how much of a part of the frame is lamp is not known: rays are counted instead
+  const bool counted = !source.whole() && !lamp.fills_frame;
+  const int points =
+      static_cast<int>(std::ceil(count * (counted ? most_points : std::min(most_points, 1 / lamp.filled))));
 
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
@@ -110,9 +140,8 @@ LampView ShadowRays::view(const PatchFrame& patch, const Lamp& lamp, int count, 
   std::array<float, packet> weights;
   alignas(64) std::array<int, packet> valid;
   const LaineKarras scramble;
-  LampView result;
   double all = 0, lit = 0;
-  for (int begin = 0; begin < points && (window.whole || result.rays < count); begin += packet) {
+  for (int begin = 0; begin < points && (!counted || result.rays < count); begin += packet) {
     int active = 0;
     for (int k = 0; k < packet; ++k) {
       const std::uint32_t* words = &words_[4 * static_cast<std::size_t>(begin + k)];
@@ -120,23 +149,12 @@ LampView ShadowRays::view(const PatchFrame& patch, const Lamp& lamp, int count, 
         return static_cast<float>(static_cast<int>(bits_reversed(scramble(words[d], seeds[d])) >> 8)) *
                0x1p-24f;
       };
-      float s = fraction(0), t = fraction(1), u = fraction(2), v = fraction(3);
-      const bool in_first = s < share;
-      s = in_first ? s / share : (s - share) / (1 - share);
-      fold(s, t);
-      const Point from = moved(corner, s, in_first ? first : second, t, in_first ? second : third);
-      if (window.whole) {
-        if (lamp.triangle) fold(u, v);
-      } else {
-        u = low_u + u * width;
-        v = low_v + v * height;
-      }
-      const Point to = moved(lamp_corner, u, along, v, up);
+      const Point from = receiver.point(fraction(0), fraction(1));
+      const Point to = source.point(fraction(2), fraction(3));
       const Point way = {to.x - from.x, to.y - from.y, to.z - from.z};
       const float square = dot(way, way), cosine = dot(way, normal), lamp_cosine = -dot(way, lamp_normal);
-      const bool beyond = lamp.triangle && u + v > 1;
-      const bool faces = begin + k < points && cosine > 0 && lamp_cosine > 0 && !beyond &&
-                         (lamp.fills_frame || lamp.holds(lamp.corner + u * lamp.along + v * lamp.up));
+      const bool faces = begin + k < points && cosine > 0 && lamp_cosine > 0 &&
+                         (lamp.fills_frame || lamp.holds(Vec3(to.x, to.y, to.z)));
       weights[k] = faces ? cosine * lamp_cosine / (square * square) : 0;
       valid[k] = faces ? -1 : 0;
       active += faces;
