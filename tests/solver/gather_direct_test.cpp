@@ -120,6 +120,33 @@ TEST(DirectIrradiance, IsHalvedByAScreenOverHalfTheLamp) {
   EXPECT_NEAR(light_on_first(mesh, glow(mesh, {1}), options), 2 * below_a_corner(1, 1, 1), 4e-3);
 }
 
+// A floor patch that shares an edge with the lamp, cut by screens into cells that see their own part of the
+// lamp only: what arrives comes from close by.
+TEST(DirectIrradiance, OfALampThatTouchesIsRightInPartialShadow) {
+  constexpr int cells = 8, seeds = 32, rays = 1024;
+  std::vector<Vec3> vertices{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0),
+                             Vec3(0, 1, 0), Vec3(1, 1, 0), Vec3(1, 1, 1), Vec3(0, 1, 1)};
+  std::vector<std::array<int, 4>> faces{{0, 1, 2, 3}, {4, 5, 6, 7}};
+  for (int k = 1; k < cells; ++k) {
+    const double x = static_cast<double>(k) / cells;
+    const int first = static_cast<int>(vertices.size());
+    vertices.insert(vertices.end(), {Vec3(x, -1, -1), Vec3(x, 2, -1), Vec3(x, 2, 2), Vec3(x, -1, 2)});
+    faces.push_back({first, first + 1, first + 2, first + 3});
+  }
+  const PatchMesh mesh = hand_made_mesh(vertices, faces);
+  GatherOptions options;
+  options.shadow_rays = rays;
+  const double expected = around_a_corner(cells, cells);
+  double square = 0;
+  for (options.seed = 0; options.seed < seeds; ++options.seed) {
+    square += std::pow(light_on_first(mesh, glow(mesh, {1}), options) / expected - 1, 2) / seeds;
+  }
+
+  // no worse than chance among the rays drawn by the cosine that would meet the lamp
+  const double whole = around_a_corner(1, 1), seen = expected / whole;
+  EXPECT_LT(std::sqrt(square), std::sqrt((1 - seen) / (seen * rays * whole)));
+}
+
 TEST(DirectIrradiance, IsNothingBehindAWall) {
   const PatchMesh mesh =
       square_below_a_lamp(1, {{Vec3(-9, -9, 0.5), Vec3(9, -9, 0.5), Vec3(9, 9, 0.5), Vec3(-9, 9, 0.5)}});

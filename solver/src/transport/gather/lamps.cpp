@@ -101,7 +101,6 @@ void set_frame(Lamp& lamp) {
 }  // namespace
 
 bool Lamp::holds(const Vec3& point) const {
-  if (fills_frame) return true;
   // crossings of a half line
   const Vec3 x = along.normalized(), y = normal.cross(x);
   const double px = point.dot(x), py = point.dot(y);
