@@ -92,6 +92,12 @@ class Assembly {
     return heights_over(a, b).low >= -plane_tolerance && heights_over(b, a).low >= -plane_tolerance;
   }
 
+  // Whether each has points above the other's plane.
+  static bool facing(const WorkPatch& p, const WorkPatch& q) {
+    return span_along(q.outline, p.plane).high > plane_tolerance &&
+           span_along(p.outline, q.plane).high > plane_tolerance;
+  }
+
   void fill_block(const Cluster& a, const Cluster& b, int level, double error, Tally& tally) const {
     Tile tile;
     for (int i0 = a.begin; i0 < a.end; i0 += Tile::rows) {
@@ -118,7 +124,10 @@ class Assembly {
         add(tally, b.size(), writer_.write(tile, i, i + 1, b.begin, b.end),
             RuleChoice::error(level, nearest));
       } else {
-        for (int j = b.begin; j < b.end; ++j) fill_pair(i, j, true, tally);
+        for (int j = b.begin; j < b.end; ++j) {
+          // sheets that coincide, back to back, are in front of each other and yet exchange nothing
+          if (facing(tree_.patches[i], tree_.patches[j])) fill_pair(i, j, true, tally);
+        }
       }
     }
   }
@@ -128,11 +137,10 @@ class Assembly {
     for (int i = a.begin; i < a.end; ++i) {
       for (int j = b.begin; j < b.end; ++j) {
         const WorkPatch &p = tree_.patches[i], &q = tree_.patches[j];
-        const Span over_p = span_along(q.outline, p.plane);
-        if (over_p.high <= plane_tolerance) continue;
-        const Span over_q = span_along(p.outline, q.plane);
-        if (over_q.high <= plane_tolerance) continue;
-        fill_pair(i, j, over_p.low >= -plane_tolerance && over_q.low >= -plane_tolerance, tally);
+        if (!facing(p, q)) continue;
+        const bool whole = span_along(q.outline, p.plane).low >= -plane_tolerance &&
+                           span_along(p.outline, q.plane).low >= -plane_tolerance;
+        fill_pair(i, j, whole, tally);
       }
     }
   }
