@@ -1,4 +1,4 @@
-#include "transport/gather/front_part.h"
+#include "rays/front_part.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
