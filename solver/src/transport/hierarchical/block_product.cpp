@@ -45,6 +45,57 @@ std::vector<std::size_t> runs_of(const std::vector<BlockList>& lists, std::size_
   return runs;
 }
 
+// Adds to the irradiance h of both ends what the light q of the other sends. Sums are kept apart from memory
+// until they are whole: the compiler cannot know that q and h never overlap.
+template <int columns>
+void exchange(const ScalarBlock& block, const double* qr, const double* qs, double* hr, double* hs) {
+  constexpr int common = 4 * columns;
+  const double value = block.value;
+  for (int c = 0; c < columns; ++c) {
+    hr[common + c] += value * qs[common + c];
+    hs[common + c] += value * qr[common + c];
+  }
+}
+
+template <int columns>
+void exchange(const LinearBlock& block, const double* qr, const double* qs, double* hr, double* hs) {
+  constexpr int common = 4 * columns;
+  std::array<double, common> to_r;
+  std::array<double, columns> to_s{};
+  for (int a = 0; a < 4; ++a) {
+    const double value = block.values[a];
+    for (int c = 0; c < columns; ++c) {
+      to_r[a * columns + c] = value * qs[common + c];
+      to_s[c] += value * qr[a * columns + c];
+    }
+  }
+  for (int k = 0; k < common; ++k) hr[k] += to_r[k];
+  for (int c = 0; c < columns; ++c) hs[common + c] += to_s[c];
+}
+
+template <int columns>
+void exchange(const BilinearBlock& block, const double* qr, const double* qs, double* hr, double* hs) {
+  constexpr int size = 4 * columns;
+  std::array<double, size> from_r, from_s, to_r{}, to_s{};
+  for (int k = 0; k < size; ++k) {
+    from_r[k] = qr[k];
+    from_s[k] = qs[k];
+  }
+  for (int a = 0; a < 4; ++a) {
+    for (int b = 0; b < 4; ++b) {
+      const double value = block.values[4 * a + b];
+      for (int c = 0; c < columns; ++c) {
+        to_r[a * columns + c] += value * from_s[b * columns + c];
+        to_s[b * columns + c] += value * from_r[a * columns + c];
+      }
+    }
+  }
+  for (int k = 0; k < size; ++k) {
+    hr[k] += to_r[k];
+    hs[k] += to_s[k];
+  }
+}
+
 template <class Body>
 void for_nodes(int begin, int end, const Body& body) {
   if (end - begin <= nodes_a_task) {
@@ -146,36 +197,13 @@ void BlockProduct::apply_columns(const double* x, double* y, int stride) const {
       }
     };
     of_part(&BlockList::scalars, [&](const ScalarBlock& block) {
-      double *hr = at(block.r) + common, *hs = at(block.s) + common;
-      const double *qr = lit(block.r) + common, *qs = lit(block.s) + common, value = block.value;
-      for (int c = 0; c < columns; ++c) {
-        hr[c] += value * qs[c];
-        hs[c] += value * qr[c];
-      }
+      exchange<columns>(block, lit(block.r), lit(block.s), at(block.r), at(block.s));
     });
     of_part(&BlockList::linears, [&](const LinearBlock& block) {
-      double *hr = at(block.r), *hs = at(block.s) + common;
-      const double *qr = lit(block.r), *qs = lit(block.s) + common;
-      for (int a = 0; a < 4; ++a) {
-        const double value = block.values[a];
-        for (int c = 0; c < columns; ++c) {
-          hr[a * columns + c] += value * qs[c];
-          hs[c] += value * qr[a * columns + c];
-        }
-      }
+      exchange<columns>(block, lit(block.r), lit(block.s), at(block.r), at(block.s));
     });
     of_part(&BlockList::bilinears, [&](const BilinearBlock& block) {
-      double *hr = at(block.r), *hs = at(block.s);
-      const double *qr = lit(block.r), *qs = lit(block.s);
-      for (int a = 0; a < 4; ++a) {
-        for (int b = 0; b < 4; ++b) {
-          const double value = block.values[4 * a + b];
-          for (int c = 0; c < columns; ++c) {
-            hr[a * columns + c] += value * qs[b * columns + c];
-            hs[b * columns + c] += value * qr[a * columns + c];
-          }
-        }
-      }
+      exchange<columns>(block, lit(block.r), lit(block.s), at(block.r), at(block.s));
     });
   });
 

@@ -11,7 +11,7 @@ namespace {
 
 // Nothing counts as darker than this share of the mean: rows must be right in shadows too, where other light
 // may go.
-constexpr double darkest_share = 0.3;
+constexpr double darkest_share = 0.6;
 
 // Bounces that tell where the light goes, and the most that a coarse operator, whose rows may exceed 1, is
 // let reflect.
