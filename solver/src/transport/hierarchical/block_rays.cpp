@@ -87,10 +87,12 @@ double RayCount::error() const {
   return all == 0 ? 0 : share_error(share(), all);
 }
 
-double BlockRays::area(int cluster) const {
-  const double square = hierarchy_.frame.scale * hierarchy_.frame.scale;
-  return hierarchy_.single(cluster) ? square * hierarchy_.mesh->areas[hierarchy_.patch(cluster)]
-                                    : hierarchy_.clusters[cluster].area;
+BlockRays::BlockRays(const PatchHierarchy& hierarchy, RTCSceneTy* scene, std::uint64_t seed)
+    : hierarchy_(hierarchy), scene_(scene), seed_(seed) {
+  if (!scene) return;
+  areas_.reserve(hierarchy.order.size() + 1);
+  areas_.push_back(0);
+  for (int patch : hierarchy.order) areas_.push_back(areas_.back() + hierarchy.mesh->areas[patch]);
 }
 
 BlockRays::Point BlockRays::point_of_patch(const BlockEnd& end, int patch, double u, double v) const {
@@ -114,20 +116,13 @@ BlockRays::Point BlockRays::point(const BlockEnd& end, int node, double u, doubl
     const double t = (node & 2 ? v : -v) * std::numbers::sqrt3 * end.axes.spread_t;
     return {end.axes.middle + s * end.axes.u + t * end.axes.v, end.bounds.plane.normal, node};
   }
-  // down the tree, by area, from a quarter of the whole that the node stands for
-  double left = 0.25 * (node + u);
-  int at = end.cluster;
-  while (!hierarchy_.single(at)) {
-    const PatchCluster& cluster = hierarchy_.clusters[at];
-    double share = left * cluster.area;
-    int k = 0;
-    for (; k + 1 < cluster.child_count && share >= area(cluster.children[k]); ++k) {
-      share -= area(cluster.children[k]);
-    }
-    at = cluster.children[k];
-    left = std::clamp(share / area(at), 0.0, 1.0);
-  }
-  return point_of_patch(end, hierarchy_.patch(at), left, v);
+  // a patch of the node's quarter of the order, which follows position, by area
+  const PatchCluster& cluster = hierarchy_.clusters[end.cluster];
+  const auto begin = areas_.begin() + cluster.begin, last = areas_.begin() + cluster.end - 1;
+  const double wanted = *begin + 0.25 * (node + u) * (last[1] - *begin);
+  const auto at = std::upper_bound(begin + 1, last + 1, wanted) - 1;
+  const double within = std::clamp((wanted - at[0]) / (at[1] - at[0]), 0.0, 1.0);
+  return point_of_patch(end, hierarchy_.order[at - areas_.begin()], within, v);
 }
 
 BlockRays::Point BlockRays::corner(const BlockEnd& end, int node) const {

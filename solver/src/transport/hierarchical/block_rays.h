@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <vector>
 
 #include "transport/hierarchical/block_end.h"
 
@@ -31,8 +32,7 @@ struct RayCount {
 /// between quasi-random points of their parts of the ends. Points depend on the seed and the two ends alone.
 class BlockRays {
  public:
-  BlockRays(const PatchHierarchy& hierarchy, RTCSceneTy* scene, std::uint64_t seed)
-      : hierarchy_(hierarchy), scene_(scene), seed_(seed) {}
+  BlockRays(const PatchHierarchy& hierarchy, RTCSceneTy* scene, std::uint64_t seed);
 
   /// Draws rays up to `wanted` in all, a multiple of 16.
   void cast(const BlockEnd& r, const BlockEnd& s, int wanted, RayCount& count) const;
@@ -47,9 +47,9 @@ class BlockRays {
   Point point(const BlockEnd& end, int node, double u, double v) const;
   Point corner(const BlockEnd& end, int node) const;
   Point point_of_patch(const BlockEnd& end, int patch, double u, double v) const;
-  double area(int cluster) const;
 
   const PatchHierarchy& hierarchy_;
+  std::vector<double> areas_;  // of the patches before each position of the order, and of all [m2]
   RTCSceneTy* scene_;
   std::uint64_t seed_;
 };
