@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <memory>
 
 namespace luxel {
 
@@ -147,12 +148,13 @@ template <int columns>
 void BlockProduct::apply_columns(const double* x, double* y, int stride) const {
   constexpr int size = values_a_node * columns, common = 4 * columns;
   const std::size_t total = tree_.nodes.size() * size;
-  std::vector<double> light(total);  // at the four nodes, and their sum
-  const auto lit = [&](int n) { return light.data() + static_cast<std::size_t>(n) * size; };
+  const auto light = std::make_unique_for_overwrite<double[]>(total);  // at the four nodes, and their sum
+  const auto lit = [&](int n) { return light.get() + static_cast<std::size_t>(n) * size; };
   for (std::size_t level = tree_.levels.size() - 1; level-- > 0;) {
     for_nodes(tree_.levels[level], tree_.levels[level + 1], [&](int n) {
       const ActiveNode& node = tree_.nodes[n];
       double* q = lit(n);
+      std::fill_n(q, size, 0.0);
       if (node.single) {
         for (int c = 0; c < columns; ++c) {
           q[common + c] = areas_[node.unknown] * x[static_cast<std::size_t>(node.unknown) * stride + c];
