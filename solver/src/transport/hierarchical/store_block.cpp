@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "form_factors/pair.h"
 
@@ -10,8 +11,8 @@ namespace luxel {
 namespace {
 
 // A side is taken for constant where that changes the irradiance by less than this share of the block's
-// error.
-constexpr double collapse_share = 0.3;
+// error: little, since neighbouring blocks slope alike.
+constexpr double collapse_share = 0.1;
 
 // An exact pair of patches may err by this share of the block's error.
 constexpr double near_share = 0.1;
@@ -25,6 +26,21 @@ double visible_share(const BlockKernel& kernel, const RayCount& rays) {
     visible += kernel.values[k] * rays.share(k);
   }
   return all > 0 ? visible / all : rays.share();
+}
+
+// Shares that rays found are means over quarters of an end, whose middles are sqrt(3) / 2 as far out as its
+// nodes: both slopes are scaled up to these, or the irradiance would change too little across the end.
+// The end's nodes are pair & first and pair & second.
+void extend_to_nodes(std::array<double, 16>& shares, int first, int second) {
+  constexpr double further = 2 / std::numbers::sqrt3;
+  for (const int axis : {first, second}) {
+    for (int k = 0; k < 16; ++k) {
+      if (k & axis) continue;
+      const double mean = 0.5 * (shares[k] + shares[k | axis]);
+      shares[k] = mean + further * (shares[k] - mean);
+      shares[k | axis] = mean + further * (shares[k | axis] - mean);
+    }
+  }
 }
 
 // Single patches whose nodes are too far apart for the kernel between them.
@@ -50,7 +66,13 @@ void store_block(const BlockEnd& r, const BlockEnd& s, const BlockKernel& kernel
   }
   std::array<double, 16> values = kernel.values;
   if (rays.all > 0) {
-    for (int k = 0; k < 16; ++k) values[k] *= rays.share(k);
+    std::array<double, 16> shares;
+    for (int k = 0; k < 16; ++k) shares[k] = rays.share(k);
+    if (!rays.unanimous()) {
+      if (!r.single) extend_to_nodes(shares, 4, 8);
+      if (!s.single) extend_to_nodes(shares, 1, 2);
+    }
+    for (int k = 0; k < 16; ++k) values[k] *= shares[k];
   }
   std::array<double, 4> of_r{}, of_s{};
   double mean = 0;
