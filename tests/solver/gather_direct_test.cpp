@@ -23,16 +23,6 @@ double below_a_corner(double a, double b, double c) {
   return (x / p * std::atan(y / p) + y / q * std::atan(x / q)) / (2 * pi);
 }
 
-/// Form factor from a rectangle 1 x w to one 1 x h at a right angle, the unit edges in common.
-/// Source: Howell, A Catalog of Radiation Heat Transfer Configuration Factors, C-14.
-double around_a_corner(double w, double h) {
-  const double ww = w * w, hh = h * h, both = ww + hh, r = std::sqrt(both);
-  const double logs = std::log((1 + ww) * (1 + hh) / (1 + both)) +
-                      ww * std::log(ww * (1 + both) / ((1 + ww) * both)) +
-                      hh * std::log(hh * (1 + both) / ((1 + hh) * both));
-  return (w * std::atan(1 / w) + h * std::atan(1 / h) - r * std::atan(1 / r) + logs / 4) / (pi * w);
-}
-
 /// A small square at the origin facing up, a lamp 2 x 2 at height 1 above it facing down, and more.
 PatchMesh square_below_a_lamp(int cuts, std::vector<std::array<Vec3, 4>> more = {}) {
   Boxes faces;
@@ -124,16 +114,7 @@ TEST(DirectIrradiance, IsHalvedByAScreenOverHalfTheLamp) {
 // lamp only: what arrives comes from close by.
 TEST(DirectIrradiance, OfALampThatTouchesIsRightInPartialShadow) {
   constexpr int cells = 8, seeds = 32, rays = 1024;
-  std::vector<Vec3> vertices{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0),
-                             Vec3(0, 1, 0), Vec3(1, 1, 0), Vec3(1, 1, 1), Vec3(0, 1, 1)};
-  std::vector<std::array<int, 4>> faces{{0, 1, 2, 3}, {4, 5, 6, 7}};
-  for (int k = 1; k < cells; ++k) {
-    const double x = static_cast<double>(k) / cells;
-    const int first = static_cast<int>(vertices.size());
-    vertices.insert(vertices.end(), {Vec3(x, -1, -1), Vec3(x, 2, -1), Vec3(x, 2, 2), Vec3(x, -1, 2)});
-    faces.push_back({first, first + 1, first + 2, first + 3});
-  }
-  const PatchMesh mesh = hand_made_mesh(vertices, faces);
+  const PatchMesh mesh = squares_cut_by_screens(cells);
   GatherOptions options;
   options.shadow_rays = rays;
   const double expected = around_a_corner(cells, cells);

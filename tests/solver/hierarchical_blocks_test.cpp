@@ -60,7 +60,7 @@ TEST(StoreBlock, TakesTheSlopeOfVisibilityOutToTheNodes) {
   }
   BlockList list;
 
-  store_block(r, s, kernel, rays, false, {1e-9, 1, 1}, list);
+  store_block(r, s, kernel, rays, {1e-9, 1, 1}, list);
 
   // the nodes lie 1 / sqrt(12) from the middle, where the share is 1/2 -+ 1 / sqrt(12)
   ASSERT_EQ(list.linears.size(), 1);

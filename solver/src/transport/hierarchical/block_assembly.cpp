@@ -276,6 +276,11 @@ class Assembly {
     if (divide_one(r, s, kinked_r, kinked_s, candidates, list, deferred)) return;
     const double smooth = coherent_ / rough_error;
     if (divide_one(r, s, r.roughness > smooth, s.roughness > smooth, candidates, list, deferred)) return;
+    const BlockTolerance tolerance{options_.block_error, bright_r, bright_s};
+    if (single && (ratio > near_ratio || straddling_r || straddling_s)) {
+      store_near(r, s, candidates.empty(), allowed, tolerance, list);
+      return;
+    }
     RayCount rays;
     if (!candidates.empty()) {
       if (!single && unknown_error > allowed) {
@@ -300,8 +305,21 @@ class Assembly {
     } else {
       ++list.unhidden;
     }
-    const bool near = single && (ratio > near_ratio || straddling_r || straddling_s);
-    store_block(r, s, kernel, rays, near, {options_.block_error, bright_r, bright_s}, list);
+    store_block(r, s, kernel, rays, tolerance, list);
+  }
+
+  // Single patches that are too close, or too steep, for the kernel between their nodes.
+  void store_near(const BlockEnd& r, const BlockEnd& s, bool unhidden, double allowed,
+                  const BlockTolerance& tolerance, BlockList& list) const {
+    int rays = 0;
+    const double visible = unhidden ? 1 : rays_.visible_share(r, s, allowed, rays);
+    list.rays += rays;
+    if (unhidden) ++list.unhidden;
+    if (visible > 0) {
+      store_near_block(r, s, visible, tolerance, list);
+    } else {
+      ++list.hidden;
+    }
   }
 
   const PatchHierarchy& hierarchy_;

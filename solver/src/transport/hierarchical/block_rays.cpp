@@ -2,19 +2,25 @@
 
 #include <embree3/rtcore.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
 
 #include "form_factors/ray_visibility.h"
+#include "rays/visible_share.h"
 #include "sampling/owen_sobol.h"
+#include "sampling/sobol_words.h"
 
 namespace luxel {
 
 namespace {
 
 constexpr int packet = 16;
+
+// Of two single patches that are close.
+constexpr int most_pairs_of_points = 1024;
 
 // Rays start and end this far in front of their patches: as in ray_visibility.cpp.
 constexpr double surface_offset = 4e-7;
@@ -81,6 +87,20 @@ void cast_packet(RTCSceneTy* scene, const Ends& ends, const OnRay& on_ray) {
   }
 }
 
+FrontPart front_part(const BlockEnd& end, const Plane& other) {
+  Polygon outline = end.bounds.hull;
+  for (int k = 0; k < outline.count; ++k) outline.corners[k] += surface_offset * end.bounds.plane.normal;
+  return FrontPart(outline, other, false);
+}
+
+// Whether a point of its plane lies in a convex polygon.
+bool inside(const Polygon& outline, const Vec3& normal, const Vec3& x) {
+  for (int k = 0; k < outline.count; ++k) {
+    if ((outline.next(k) - outline[k]).cross(x - outline[k]).dot(normal) < 0) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 double RayCount::error() const {
@@ -93,6 +113,36 @@ BlockRays::BlockRays(const PatchHierarchy& hierarchy, RTCSceneTy* scene, std::ui
   areas_.reserve(hierarchy.order.size() + 1);
   areas_.push_back(0);
   for (int patch : hierarchy.order) areas_.push_back(areas_.back() + hierarchy.mesh->areas[patch]);
+  words_ = reversed_sobol_words(most_pairs_of_points);
+}
+
+double BlockRays::visible_share(const BlockEnd& r, const BlockEnd& s, double allowed, int& rays) const {
+  // the smaller end sees the more of the other
+  const bool swapped = s.area < r.area;
+  const BlockEnd &receiver = swapped ? s : r, &source = swapped ? r : s;
+  const Plane &plane = receiver.bounds.plane, &far = source.bounds.plane;
+  const Polygon& outline = source.bounds.hull;
+  const SightEnds ends{front_part(receiver, far),
+                       front_part(source, plane),
+                       plane.normal,
+                       far.normal,
+                       far.offset + surface_offset,
+                       true,
+                       true,
+                       [&](const Vec3& x) { return inside(outline, far.normal, x); }};
+  if (ends.receiver.empty() || ends.source.empty()) return 1;  // of nothing
+  VisibleShare visible(
+      ends, scene_,
+      mixed_seed(seed_, static_cast<std::uint64_t>(r.cluster) << 32 | static_cast<std::uint64_t>(s.cluster)));
+  int drawn = 0;
+  for (int wanted = packet; drawn < most_pairs_of_points; wanted *= 2) {
+    for (; drawn < wanted; drawn += packet)
+      visible.draw(packet, &words_[4 * static_cast<std::size_t>(drawn)]);
+    const double certain = visible.equal_rays();
+    if (certain > 0 && share_error(visible.share(), certain) <= allowed) break;
+  }
+  rays += visible.rays();
+  return visible.rays() > 0 ? visible.share() : 1;
 }
 
 BlockRays::Point BlockRays::point_of_patch(const BlockEnd& end, int patch, double u, double v) const {
