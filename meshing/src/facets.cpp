@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "corner_positions.h"
 #include "ear_clipping.h"
 #include "luxel/input_error.h"
 #include "polygon.h"
@@ -14,16 +15,11 @@ namespace {
 
 enum Side : char { no_side = 0, front_side = 1, back_side = 2 };
 
-std::vector<Vec3> positions(const std::vector<Vec3>& vertices, std::span<const int> loop) {
-  std::vector<Vec3> points;
-  points.reserve(loop.size());
-  for (const int v : loop) points.push_back(vertices[v]);
-  return points;
-}
-
 /// Every face's corners after welding, without corners that repeat the one before.
 Loops welded_loops(const Scene& scene, const WeldedVertices& welded) {
   Loops loops;
+  loops.offsets.reserve(scene.face_offsets.size());
+  loops.entries.reserve(scene.face_vertices.size());
   std::vector<int> loop;
   for (int f = 0; f < scene.face_count(); ++f) {
     loop.clear();
@@ -65,10 +61,6 @@ std::string count_of_faces(const std::vector<int>& faces, const std::string& one
 
 }  // namespace
 
-std::vector<Vec3> Facets::points(int facet) const {
-  return positions(vertices, loop(facet));
-}
-
 std::vector<std::array<int, 3>> triangulate_loop(std::span<const Vec3> loop) {
   const auto [u, v] = plane_axes(area_vector(loop).normalized());
   if (loop.size() == 4 && is_convex(loop)) {
@@ -89,10 +81,11 @@ Facets make_facets(const Scene& scene) {
   facets.vertices = std::move(welded.positions);
   facets.welded_vertices = welded.welded;
 
+  CornerPositions positions(facets.vertices);
   std::vector<char> with_area(scene.face_count());
   std::vector<int> degenerate, duplicates;
   for (int f = 0; f < scene.face_count(); ++f) {
-    with_area[f] = has_area(positions(facets.vertices, loops[f]));
+    with_area[f] = has_area(positions(loops[f]));
     if (!with_area[f]) degenerate.push_back(f);
   }
   const std::vector<char> sides = free_sides(scene, loops, with_area, duplicates);
@@ -105,7 +98,7 @@ Facets make_facets(const Scene& scene) {
   };
   for (int f = 0; f < scene.face_count(); ++f) {
     if (sides[f] == no_side) continue;
-    const std::vector<Vec3> points = positions(facets.vertices, loops[f]);
+    const std::span<const Vec3> points = positions(loops[f]);
     const bool flat = is_flat(points);
     if (!flat || points.size() > 4 || (points.size() == 4 && !is_convex(points))) ++facets.split_faces;
     if (flat) {
@@ -113,7 +106,7 @@ Facets make_facets(const Scene& scene) {
     } else {
       for (const auto& t : triangulate_loop(points)) {
         const std::array<int, 3> triangle = {loops[f][t[0]], loops[f][t[1]], loops[f][t[2]]};
-        if (has_area(positions(facets.vertices, triangle))) append(triangle, f);
+        if (has_area(positions(triangle))) append(triangle, f);
       }
     }
   }

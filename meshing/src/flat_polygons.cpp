@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "corner_positions.h"
 #include "polygon.h"
 
 namespace luxel {
@@ -150,8 +151,9 @@ Frame fit_plane(const Facets& facets, const std::vector<Vec3>& areas, std::span<
   Vec3 moment = Vec3::Zero();
   double total = 0;
   const Vec3 start = facets.vertices[facets.loop(members[0])[0]];
+  CornerPositions positions(facets.vertices);
   for (const int facet : members) {
-    const std::vector<Vec3> points = facets.points(facet);
+    const std::span<const Vec3> points = positions(facets.loop(facet));
     const double weight = areas[facet].norm();
     area += areas[facet];
     moment += weight * (area_centroid(points, areas[facet]) - start);
@@ -171,7 +173,8 @@ Frame fit_plane(const Facets& facets, const std::vector<Vec3>& areas, std::span<
 std::vector<Vec3> facet_areas(const Facets& facets) {
   std::vector<Vec3> areas;
   areas.reserve(facets.size());
-  for (int i = 0; i < facets.size(); ++i) areas.push_back(area_vector(facets.points(i)));
+  CornerPositions positions(facets.vertices);
+  for (int i = 0; i < facets.size(); ++i) areas.push_back(area_vector(positions(facets.loop(i))));
   return areas;
 }
 

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "angle.h"
+#include "corner_positions.h"
 #include "polygon.h"
 
 namespace luxel {
@@ -56,8 +57,9 @@ void measure_quality(PatchMesh& mesh, const Facets& facets) {
   }
   double scene_area = 0;
   report.sharpest_input_angle = 180;
+  CornerPositions positions(facets.vertices);
   for (int i = 0; i < facets.size(); ++i) {
-    const std::vector<Vec3> points = facets.points(i);
+    const std::span<const Vec3> points = positions(facets.loop(i));
     scene_area += area_vector(points).norm() * (facets.front[i] + facets.back[i]);
     report.sharpest_input_angle = std::min(report.sharpest_input_angle, smallest_angle(points));
   }

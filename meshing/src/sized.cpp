@@ -175,7 +175,7 @@ void append(PatchMesh& mesh, const Scene& scene, const Facets& facets, const Mer
 
 }  // namespace
 
-void append_sized(PatchMesh& mesh, const Scene& scene, const Facets& facets,
+void append_sized(PatchMesh& mesh, const Scene& scene, const Facets& facets, const EdgeTable& edges,
                   const std::vector<int>& polygon_of_facet, const MeshingOptions& options,
                   const Progress& progress) {
   const double area = radiating_area(facets);
@@ -189,7 +189,7 @@ void append_sized(PatchMesh& mesh, const Scene& scene, const Facets& facets,
   const auto refuse = [&](double count) { refuse_too_many(scene, count, options.max_patches); };
   refuse(at_least);
 
-  SizedMesher mesher(scene, facets, guess, options.crease_angle);
+  SizedMesher mesher(scene, facets, edges, guess, options.crease_angle);
   const Sized sized = by_size ? fill_by_size(mesher, options.patch_size, refuse, progress)
                               : fill_by_count(mesher, guess, wanted, refuse, progress);
   append(mesh, scene, facets, mesher.plan().merged, polygon_of_facet, sized.filled);

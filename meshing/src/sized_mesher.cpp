@@ -12,8 +12,9 @@ constexpr double longest_of_halved = 1.5;
 
 }  // namespace
 
-SizedMesher::SizedMesher(const Scene& scene, const Facets& facets, double guess, double crease_angle)
-    : facets_(facets), plan_(plan_surface(scene, facets, guess, crease_angle)) {}
+SizedMesher::SizedMesher(const Scene& scene, const Facets& facets, const EdgeTable& edges, double guess,
+                         double crease_angle)
+    : facets_(facets), plan_(plan_surface(scene, facets, edges, guess, crease_angle)) {}
 
 double SizedMesher::sides(int p) const {
   const int facet = plan_.merged.regions[p][0];

@@ -21,8 +21,9 @@ struct Filled {
 /// Cuts a scene into triangles of any size asked for.
 class SizedMesher {
  public:
-  /// `guess` is about the edge length that will be asked for [m].
-  SizedMesher(const Scene& scene, const Facets& facets, double guess, double crease_angle);
+  /// `edges` are those of the facets; `guess` is about the edge length that will be asked for [m].
+  SizedMesher(const Scene& scene, const Facets& facets, const EdgeTable& edges, double guess,
+              double crease_angle);
 
   /// How many patches an edge length gives, about, before grading.
   double count(double edge_length);

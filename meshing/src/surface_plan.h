@@ -20,8 +20,9 @@ struct SurfacePlan {
   int contact_edges = 0;
 };
 
-/// `edge_length` is about the one that will be asked for [m]: triangles of a curved surface that are much
-/// longer are filled, which makes better angles than halving.
-SurfacePlan plan_surface(const Scene& scene, const Facets& facets, double edge_length, double crease_angle);
+/// `edges` are those of the facets; `edge_length` is about the one that will be asked for [m]: triangles of a
+/// curved surface that are much longer are filled, which makes better angles than halving.
+SurfacePlan plan_surface(const Scene& scene, const Facets& facets, const EdgeTable& edges, double edge_length,
+                         double crease_angle);
 
 }  // namespace luxel
