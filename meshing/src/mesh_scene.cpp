@@ -79,8 +79,11 @@ PatchMesh mesh_scene(const Scene& scene, const MeshingOptions& options, const Pr
     append_sized(mesh, scene, conforming, *edges, blocking.polygon_of_facet, options, progress);
     if (repaired) mesh.report.repaired_t_junctions = repaired->repaired;
   }
+  measure_patches(mesh);
   measure_quality(mesh, facets);
-  mesh.report.remaining_t_vertices = count_t_vertices(mesh);
+  // Patches that are the facets, none of which has a vertex on an edge, have none either.
+  const bool found_before = as_is && !repaired && facets.split_faces == 0;
+  mesh.report.remaining_t_vertices = found_before ? 0 : count_t_vertices(mesh);
   tell(progress, 1);
   return mesh;
 }
