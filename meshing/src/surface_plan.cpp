@@ -81,7 +81,7 @@ SurfacePlan plan_surface(const Scene& scene, const Facets& facets, const EdgeTab
            scene.face_groups[a] == scene.face_groups[b] && facets.front[i] == facets.front[j] &&
            facets.back[i] == facets.back[j];
   };
-  SurfacePlan plan{merge_facets(facets, edges, may_join), {}, {}, {}, {}, {}, {}, 0};
+  SurfacePlan plan{merge_facets(facets, edges, may_join), {}, {}, {}, {}, {}, {}, {}, 0};
   const MergedPolygons& merged = plan.merged;
   const CurvedTest curved(facets, edges, merged, filled_from * edge_length, crease_angle);
 
@@ -113,6 +113,13 @@ SurfacePlan plan_surface(const Scene& scene, const Facets& facets, const EdgeTab
     plan.contact_edges += static_cast<int>(list.size());
     for (const auto& [a, b] : list) plan.edges.add(a, b);
   }
+  std::vector<std::vector<int>> edges_of;
+  for (const int p : plan.filled) {
+    std::vector<int>& list = edges_of.emplace_back();
+    for (const auto& [a, b] : merged.polygons.border(p)) list.push_back(plan.edges.find(a, b));
+    for (const auto& [a, b] : plan.creases[p]) list.push_back(plan.edges.find(a, b));
+  }
+  plan.turns = take_turns(plan.filled, edges_of, merged.regions.size(), plan.edges.size());
   for (const auto& triangle : plan.halved) {
     for (int k = 0; k < 3; ++k) {
       const std::array<int, 2> edge = {triangle[k], triangle[(k + 1) % 3]};

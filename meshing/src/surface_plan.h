@@ -4,6 +4,7 @@
 #include "luxel/scene.h"
 #include "merged_polygons.h"
 #include "shared_edges.h"
+#include "sizing.h"
 
 namespace luxel {
 
@@ -17,6 +18,7 @@ struct SurfacePlan {
   std::vector<int> polygon_of_halved;
   SharedEdges edges;                        ///< of the filled polygons and their creases
   std::vector<std::array<int, 2>> watched;  ///< edges that filled and halved parts share
+  Turns turns;                              ///< of the filled polygons and of `edges`
   int contact_edges = 0;
 };
 
