@@ -77,13 +77,16 @@ Sized fill_with_angle(SizedMesher& mesher, double guess, double n, double smalle
   double too_many = std::numeric_limits<double>::infinity();
   for (int trial = 0; trial < fill_trials; ++trial) {
     sizing = find_sizing(mesher, sizing.edge_length, aim);
-    refuse(mesher.count(sizing));
+    const double expected = mesher.count(sizing);
+    refuse(expected);
     Filled filled = mesher.fill(sizing, smallest_angle, progress);
     const double found = mesher.count(filled);
     const bool again = filled.graded && filled.complete;
     const double error = std::abs(found / n - 1);
     if (error < best.error) best = {std::move(filled), sizing, error};
-    if (error <= fill_tolerance || !again) break;
+    // Fewer than the coarsest triangles cannot be had, however low the aim.
+    const bool coarsest = expected > (1 + promised_tolerance) * aim;
+    if (error <= fill_tolerance || !again || (coarsest && found > n)) break;
     (found > n ? too_many : too_few) = aim;
     aim *= n / found;
     if (!(aim > too_few && aim < too_many)) aim = 0.5 * (too_few + too_many);

@@ -69,15 +69,16 @@ class SizingSearch {
 
   /// The best sizing with edges divided a little more or less.
   void trim() {
-    const Sizing untrimmed = best_;
-    const double sign = mesher_.count(untrimmed) < n_ ? 1 : -1;
+    Sizing trimmed = best_;
+    const double sign = mesher_.count(trimmed) < n_ ? 1 : -1;
     double small = 0;
     double large = 1;
+    trimmed.trim = sign;
     for (int trial = 0; trial < mix_trials && best_error_ > count_tolerance; ++trial) {
-      Sizing trimmed = untrimmed;
-      trimmed.trim = sign * 0.5 * (small + large);
       const bool enough = (count(trimmed) > n_) == (sign > 0);
+      if (!enough && trial == 0) return;  // all edges together do not do it
       (enough ? large : small) = std::abs(trimmed.trim);
+      trimmed.trim = sign * 0.5 * (small + large);
     }
   }
 
