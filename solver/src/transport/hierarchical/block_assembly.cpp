@@ -9,6 +9,7 @@
 #include "form_factors/shaft.h"
 #include "stage_progress.h"
 #include "transport/hierarchical/block_end.h"
+#include "transport/hierarchical/block_errors.h"
 #include "transport/hierarchical/block_rays.h"
 #include "transport/hierarchical/corner_error.h"
 #include "transport/hierarchical/near_occluders.h"
@@ -20,43 +21,6 @@ namespace {
 
 // Tasks in the fixed list: enough to keep many cores busy to the end.
 constexpr std::size_t task_count = 4096;
-
-// Bilinear interpolation of the kernel between ends of radii r and s at distance d errs by about this times
-// ((r + s) / d)^2 of it.
-constexpr double interpolation_error = 0.5;
-
-// Ends nearer than this, (r + s) / d, are too close for the nodes to tell the kernel; what they exchange is
-// then uncertain by this share of it.
-constexpr double touching_ratio = 0.8;
-constexpr double touching_error = 0.25;
-
-// Nearer single patches, and those that straddle, get an exact kernel.
-constexpr double near_ratio = 0.5;
-
-// An end partly behind the other's horizon: the kernel has a kink.
-constexpr double straddling_error = 0.1;
-constexpr double straddling_depth = 1e-7;
-
-// What a block with some occluder between may err by before rays are cast, after they agreed, and where they
-// do not, beside their own standard error.
-constexpr double unknown_error = 0.04;
-constexpr double agreed_error = 0.04;
-constexpr double mixed_error = 0.12;
-
-// Horizons, near occluders and rough ends change the kernel across an end alike for all parts of the other's
-// surroundings, however bright, whose errors then add up, to this many times the accuracy at most.
-constexpr double coherent_error = 2;
-
-// Across a curved end the horizon errs by this share of what all that is behind it sends, a rough end by this
-// share of its roughness.
-constexpr double kink_error = 0.5;
-constexpr double rough_error = 0.25;
-
-// The shadow of an occluder `near` radii away changes across an end by 1 / near^2 of this.
-constexpr double shadow_error = 0.125;
-
-// So many blocks, about, share one shadow's error: smaller ones may be mixed.
-constexpr double coherence = 14;
 
 // Rays: the first lot, what clusters get where these do not agree or an occluder is near, and the most that
 // two single patches get.
@@ -70,7 +34,7 @@ constexpr double standing = 0.1;
 // Long lists of occluders are looked through again only once the ends have shrunk to this share: bodies of
 // many facets seldom let a block go for certain, and rays decide in the end.
 constexpr std::size_t long_list = 8;
-constexpr double shrunk_enough = 0.6;
+constexpr double shrunk_enough = 0.45;
 
 class Assembly {
  public:
@@ -268,11 +232,12 @@ class Assembly {
       return;
     }
     const double nearby = std::numbers::pi * apart * apart;
-    const bool kinked_r = straddling_r && !r.single &&
-                          kink(r, s, kernel.values, share) * std::min(nearby, plane_area(s)) > coherent_;
-    const bool kinked_s =
-        straddling_s && !s.single &&
-        kink(s, r, transposed(kernel.values), share) * std::min(nearby, plane_area(r)) > coherent_;
+    const bool kinked_r =
+        straddling_r && !r.single &&
+        kink(r, s, kernel.values, share) * std::min(nearby, plane_area(s)) > kink_share * coherent_;
+    const bool kinked_s = straddling_s && !s.single &&
+                          kink(s, r, transposed(kernel.values), share) * std::min(nearby, plane_area(r)) >
+                              kink_share * coherent_;
     if (divide_one(r, s, kinked_r, kinked_s, candidates, list, deferred)) return;
     const double smooth = coherent_ / rough_error;
     if (divide_one(r, s, r.roughness > smooth, s.roughness > smooth, candidates, list, deferred)) return;
