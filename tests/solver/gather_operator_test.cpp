@@ -115,12 +115,12 @@ TEST(GatherOperator, LosesTheLightThatLeavesAnOpenBox) {
   open.faces.erase(open.faces.begin() + 1);  // the top
   const PatchMesh mesh = cut_faces(open, 8);
 
-  const auto transport = gather_of(mesh, 1024);
+  const auto transport = gather_of(mesh, 4096);
 
   double escaped = 0;
   for (int i = 0; i < mesh.size(); ++i) escaped += mesh.areas[i] * (1 - transport->row_sums()[i]);
-  // the mouth is convex and sees nothing but the box: what arrives there is its own area; 320 patches with
-  // 1,024 rays leave 0.45 1024^-0.67 / sqrt(320) = 0.03 %
+  // the mouth is convex and sees nothing but the box: what arrives there is its own area; the directions that
+  // sixteen patches share make the error of all that of 20 packets: 0.03 % over 30 seeds
   EXPECT_NEAR(escaped, 1, 1e-3);
 }
 

@@ -10,7 +10,6 @@
 #include "enclosures/shells.h"
 #include "enclosures/triangle_soup.h"
 #include "sampling/owen_sobol.h"
-#include "sampling/sobol_words.h"
 #include "transport/gather/packets.h"
 #include "transport/gather/patch_frame.h"
 #include "transport/gather/sorted_rays.h"
@@ -44,6 +43,9 @@ constexpr std::size_t large_scene = 100'000;
 constexpr std::size_t sorted_packets = 512;
 constexpr int sorted_rays = 64;
 
+// Share of a quad's area in its second triangle, below which no point falls there.
+constexpr double least_share = 0x1p-24;
+
 // Rays of one packet between two visits to the sums: their patches stay in the first cache.
 constexpr int rays_a_visit = 128;
 
@@ -75,15 +77,7 @@ std::vector<std::int32_t> closed_cells(const PatchMesh& mesh, const RayScene& oc
 
 }  // namespace
 
-PatchNet::PatchNet(int count)
-    : blocks_((count + lanes - 1) / lanes), words_(4 * static_cast<std::size_t>(this->count())) {
-  const std::vector<std::uint32_t> words = reversed_sobol_words(this->count());
-  for (int b = 0; b < blocks_; ++b) {
-    for (int k = 0; k < lanes; ++k) {
-      for (int q = 0; q < 4; ++q) words_[(4 * b + q) * lanes + k] = words[4 * (b * lanes + k) + q];
-    }
-  }
-}
+PatchNet::PatchNet(int count) : blocks_((count + lanes - 1) / lanes), words_(net_words(count)) {}
 
 GatherRays::GatherRays(const PatchMesh& mesh, const RayScene& occluders, int count, std::uint64_t seed,
                        int most)
@@ -98,8 +92,10 @@ GatherRays::GatherRays(const PatchMesh& mesh, const RayScene& occluders, int cou
   if (rough(mesh)) together_ = sorted_packets;
   scene_.map = &map_;
   scene_.nothing = mesh.size();
-  const bool any = std::any_of(enclosures_.begin(), enclosures_.end(), [](int cell) { return cell >= 0; });
-  scene_.enclosures = any ? enclosures_.data() : nullptr;
+  // with one cell for all there is no other to be met
+  const bool one = std::all_of(enclosures_.begin(), enclosures_.end() - 1,
+                               [&](std::int32_t cell) { return cell == enclosures_[0]; });
+  scene_.enclosures = one ? nullptr : enclosures_.data();
 }
 
 std::size_t GatherRays::bytes() const {
@@ -113,6 +109,7 @@ const PatchLocator& GatherRays::locator() const {
 
 PacketFrame GatherRays::frame_of(const GatherOperator::Packet& packet, std::uint64_t seed_of_all) const {
   PacketFrame frame;
+  bool triangles = true, parallelograms = true;
   const Vec3 tangent = mesh_.normals[packet[0]].unitOrthogonal();
   for (int k = 0; k < lanes; ++k) {
     const int patch = packet[k] >= 0 ? packet[k] : packet[0];
@@ -132,13 +129,22 @@ PacketFrame GatherRays::frame_of(const GatherOperator::Packet& packet, std::uint
       frame.bitangent[c][k] = static_cast<float>(bitangent[c]);
     }
     frame.share[k] = static_cast<float>(own.share);
+    frame.first_scale[k] = static_cast<float>(1 / own.share);
+    frame.other_scale[k] = static_cast<float>(1 / std::max(1 - own.share, least_share));
+    triangles = triangles && mesh_.corner_count(patch) == 3;
+    parallelograms = parallelograms && own.parallelogram;
     const std::uint64_t seed = mixed_seed(seed_of_all ^ own_stream, patch);
-    for (int q = 0; q < 4; ++q) frame.seeds[q][k] = static_cast<std::uint32_t>(mixed_seed(seed, q));
+    for (int q = 0; q < 4; ++q) {
+      const std::uint32_t digits = q < 2 ? ~0u : lower_digits_;
+      frame.turned[q][k] = static_cast<std::uint32_t>(mixed_seed(seed, q)) & digits;
+    }
     frame.enclosure[k] = enclosures_[patch];
     frame.valid[k] = packet[k] >= 0 ? -1 : 0;
   }
+  using Shape = PacketFrame::Shape;
+  frame.shape = triangles ? Shape::triangles : parallelograms ? Shape::parallelograms : Shape::quads;
   const std::uint64_t seed = mixed_seed(seed_of_all ^ shared_stream, packet[0]);
-  for (int q = 0; q < 2; ++q) frame.shared_seeds[q] = static_cast<std::uint32_t>(mixed_seed(seed, q));
+  for (int q = 0; q < 4; ++q) frame.seeds[q] = static_cast<std::uint32_t>(mixed_seed(seed, q));
   return frame;
 }
 
@@ -188,11 +194,11 @@ void GatherRays::trace_sample(std::size_t packet, int sample, int count, std::ui
 
 bool GatherRays::set_count(int count) {
   count_ = count;
-  words_ = reversed_sobol_words(std::max(count, most_rays_sampled));
+  words_ = net_words(std::max(count, most_rays_sampled));
   scene_.words = words_.data();
-  const std::uint32_t digits = scene_.lower_digits;
-  scene_.lower_digits = map_.triangles().size() > large_scene ? 0 : 0xffffffffu >> shared_digits(count);
-  return scene_.lower_digits == digits;
+  const std::uint32_t digits = lower_digits_;
+  lower_digits_ = map_.triangles().size() > large_scene ? 0 : 0xffffffffu >> shared_digits(count);
+  return lower_digits_ == digits;
 }
 
 void GatherRays::trace_patch(int patch, const PatchNet& net, std::uint64_t seed, std::uint32_t* met) const {
@@ -201,12 +207,12 @@ void GatherRays::trace_patch(int patch, const PatchNet& net, std::uint64_t seed,
   PacketFrame frame = frame_of(packet, seed_);
   const std::uint64_t own = mixed_seed(seed ^ single_stream, patch);
   for (int q = 0; q < 4; ++q) {
-    std::fill_n(frame.seeds[q], lanes, static_cast<std::uint32_t>(mixed_seed(own, q)));
+    frame.seeds[q] = static_cast<std::uint32_t>(mixed_seed(own, q));
+    std::fill_n(frame.turned[q], lanes, 0u);
   }
   PacketScene scene = scene_;
   scene.words = net.words_.data();
   scene.lane_words = true;
-  scene.lower_digits = ~0u;
   std::vector<DoubtfulRay> doubtful;
   trace_packet(scene, frame, 0, net.blocks_, met, doubtful);
   settle(packet, 0, doubtful, met);

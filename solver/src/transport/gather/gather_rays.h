@@ -89,6 +89,7 @@ class GatherRays {
   std::vector<GatherOperator::Packet> packets_;
   HitMap map_;
   std::vector<std::uint32_t> words_;
+  std::uint32_t lower_digits_ = 0;  // of a direction: those that are a patch's own
   std::size_t together_ = 1;
   std::vector<std::int32_t> enclosures_;  // the closed cell of each patch or -1; and of nothing
   PacketScene scene_;

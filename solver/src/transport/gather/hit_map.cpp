@@ -82,10 +82,11 @@ HitMap::HitMap(const PatchMesh& mesh, double texels_a_patch) : triangles_(mesh.o
       total += static_cast<std::size_t>(pictures[p].width) * pictures[p].height;
     }
   }
-  if (total > std::numeric_limits<std::int32_t>::max()) {
+  if (total >= std::numeric_limits<std::int32_t>::max()) {
     throw std::invalid_argument("HitMap: more patches than texel numbers of 31 bits");
   }
-  texels_.assign(total, ask);
+  texels_.assign(total + 1, ask);
+  texels_.back() = mesh.size();
   const ContactEdges contacts(mesh);
   tbb::parallel_for(0, polygons, [&](int p) {
     const PlanePicture& picture = pictures[p];

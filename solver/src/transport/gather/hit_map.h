@@ -39,7 +39,9 @@ class HitMap {
   static constexpr std::int32_t off_patches = -2;
 
   const std::vector<Triangle>& triangles() const { return triangles_; }
+  /// All pictures, and behind them a texel that stands for whatever holds no patch.
   const std::vector<std::int32_t>& texels() const { return texels_; }
+  std::int32_t nothing() const { return static_cast<std::int32_t>(texels_.size()) - 1; }
   std::size_t bytes() const {
     return triangles_.size() * sizeof(Triangle) + texels_.size() * sizeof(std::int32_t);
   }

@@ -92,45 +92,96 @@ HWY_INLINE Direction CosineDirection(const Reals height, const Reals azimuth) {
           hn::Mul(radius, hn::Mul(two, hn::Mul(sine, cosine))), hn::Sqrt(hn::Sub(one, square))};
 }
 
-// Where lanes k .. of the ray that `words` belongs to start, and which way.
-HWY_INLINE void StartRays(const PacketScene& scene, const PacketFrame& frame, const uint32_t* words,
-                          uint32_t height, uint32_t azimuth, int k, float* const origins[3],
-                          float* const directions[3]) {
+// Sixteen points of a net under nested uniform scrambling, a row for each of their numbers.
+struct alignas(64) NetPoints {
+  uint32_t rows[4][lanes];
+
+  HWY_INLINE void Scramble(const uint32_t* words, int block, const uint32_t seeds[4]) {
+    const Word w;
+    words += 4 * lanes * static_cast<size_t>(block);
+    for (int q = 0; q < 4; ++q) {
+      for (size_t k = 0; k < lanes; k += hn::Lanes(w)) {
+        const Words scrambled = Scrambled(hn::LoadU(w, words + q * lanes + k), hn::Set(w, seeds[q]));
+        hn::Store(BitsReversed(scrambled), w, rows[q] + k);
+      }
+    }
+  }
+};
+
+struct Place {
+  Reals s, t;
+};
+
+// The half of the square beyond its diagonal folded onto the other (Heitz 2019), which moves points the
+// least.
+HWY_INLINE Place Folded(const Reals s, const Reals t) {
+  const Real d;
+  const Reals half = hn::Set(d, 0.5f), half_s = hn::Mul(s, half), half_t = hn::Mul(t, half);
+  const auto above = hn::Gt(t, s);
+  return {hn::IfThenElse(above, half_s, hn::Sub(s, half_t)),
+          hn::IfThenElse(above, hn::Sub(t, half_s), half_t)};
+}
+
+// Where lanes k .. start, with two numbers of theirs.
+template <PacketFrame::Shape shape>
+HWY_INLINE void StartPoints(const PacketFrame& frame, Reals s, Reals t, int k, float* const origins[3]) {
+  const Real d;
+  if constexpr (shape == PacketFrame::Shape::quads) {
+    // which triangle, then how far along
+    const Reals share = hn::Load(d, frame.share + k);
+    const auto in_first = hn::Lt(s, share);
+    s = hn::IfThenElse(in_first, hn::Mul(s, hn::Load(d, frame.first_scale + k)),
+                       hn::Mul(hn::Sub(s, share), hn::Load(d, frame.other_scale + k)));
+    const Place place = Folded(s, t);
+    for (int c = 0; c < 3; ++c) {
+      const Reals second = hn::Load(d, frame.second[c] + k);
+      const Reals a = hn::IfThenElse(in_first, hn::Load(d, frame.first[c] + k), second);
+      const Reals b = hn::IfThenElse(in_first, second, hn::Load(d, frame.third[c] + k));
+      hn::StoreU(hn::MulAdd(place.s, a, hn::MulAdd(place.t, b, hn::Load(d, frame.corner[c] + k))), d,
+                 origins[c] + k);
+    }
+  } else {
+    constexpr bool whole = shape == PacketFrame::Shape::parallelograms;
+    const Place place = whole ? Place{s, t} : Folded(s, t);
+    for (int c = 0; c < 3; ++c) {
+      const Reals along_t = hn::Load(d, (whole ? frame.third : frame.second)[c] + k);
+      hn::StoreU(hn::MulAdd(place.s, hn::Load(d, frame.first[c] + k),
+                            hn::MulAdd(place.t, along_t, hn::Load(d, frame.corner[c] + k))),
+                 d, origins[c] + k);
+    }
+  }
+}
+
+// Where lanes start, and which way: all with one point of the net, or with `point` -1 each with one of its
+// own.
+HWY_INLINE void StartRays(const NetPoints& points, int point, const PacketFrame& frame,
+                          float* const origins[3], float* const directions[3]) {
   const Real d;
   const Word w;
-  const auto seed = [&](int q) { return hn::Load(w, frame.seeds[q] + k); };
-  const auto own = [&](int q) {
-    const Words word = scene.lane_words ? hn::LoadU(w, words + q * lanes + k) : hn::Set(w, words[q]);
-    return BitsReversed(Scrambled(word, seed(q)));
-  };
-
-  // the point: which triangle, then the square folded to it
-  Reals s = Fraction(own(0)), t = Fraction(own(1));
-  const Reals share = hn::Load(d, frame.share + k), one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f);
-  const auto in_first = hn::Lt(s, share);
-  s = hn::IfThenElse(in_first, hn::Div(s, share),
-                     hn::Div(hn::Sub(s, share), hn::Max(hn::Sub(one, share), hn::Set(d, 0x1p-24f))));
-  const auto above = hn::Gt(t, s);
-  const Reals half_s = hn::Mul(s, half), half_t = hn::Mul(t, half);
-  s = hn::IfThenElse(above, half_s, hn::Sub(s, half_t));
-  t = hn::IfThenElse(above, hn::Sub(t, half_s), half_t);
-
-  // the direction: upper digits from the packet, lower from the lane
-  const Words lower = hn::Set(w, scene.lower_digits);
-  const auto joined = [&](uint32_t shared, int q) {
-    return Fraction(hn::Or(hn::Set(w, shared & ~scene.lower_digits), hn::And(own(q), lower)));
-  };
-  const Direction local = CosineDirection(joined(height, 2), joined(azimuth, 3));
-
-  for (int c = 0; c < 3; ++c) {
-    const Reals second = hn::Load(d, frame.second[c] + k);
-    const Reals a = hn::IfThenElse(in_first, hn::Load(d, frame.first[c] + k), second);
-    const Reals b = hn::IfThenElse(in_first, second, hn::Load(d, frame.third[c] + k));
-    hn::StoreU(hn::MulAdd(s, a, hn::MulAdd(t, b, hn::Load(d, frame.corner[c] + k))), d, origins[c] + k);
-    const Reals along = hn::MulAdd(local.x, hn::Load(d, frame.tangent[c] + k),
-                                   hn::MulAdd(local.y, hn::Load(d, frame.bitangent[c] + k),
-                                              hn::Mul(local.z, hn::Load(d, frame.normal[c] + k))));
-    hn::StoreU(along, d, directions[c] + k);
+  for (size_t lane = 0; lane < lanes; lane += hn::Lanes(w)) {
+    const int k = static_cast<int>(lane);
+    const auto number = [&](int q) {
+      const Words shared = point < 0 ? hn::Load(w, points.rows[q] + k) : hn::Set(w, points.rows[q][point]);
+      return Fraction(hn::Xor(shared, hn::Load(w, frame.turned[q] + k)));
+    };
+    const Reals s = number(0), t = number(1);
+    switch (frame.shape) {
+      case PacketFrame::Shape::triangles:
+        StartPoints<PacketFrame::Shape::triangles>(frame, s, t, k, origins);
+        break;
+      case PacketFrame::Shape::parallelograms:
+        StartPoints<PacketFrame::Shape::parallelograms>(frame, s, t, k, origins);
+        break;
+      default:
+        StartPoints<PacketFrame::Shape::quads>(frame, s, t, k, origins);
+    }
+    const Direction local = CosineDirection(number(2), number(3));
+    for (int c = 0; c < 3; ++c) {
+      const Reals along = hn::MulAdd(local.x, hn::Load(d, frame.tangent[c] + k),
+                                     hn::MulAdd(local.y, hn::Load(d, frame.bitangent[c] + k),
+                                                hn::Mul(local.z, hn::Load(d, frame.normal[c] + k))));
+      hn::StoreU(along, d, directions[c] + k);
+    }
   }
 }
 
@@ -145,50 +196,83 @@ HWY_INLINE void ResetHits(RTCRayHit16& rays) {
   }
 }
 
-// A packet under way, and where its hits lie in the map; negative: on no patch.
+// A packet under way, and where its hits lie in the map.
 struct alignas(64) Flight {
   RTCRayHit16 rays = {};
   int32_t texels[lanes];
 };
 
-// Where lanes k .. hit; their texels are called for.
+// Triangles met by one packet up to which each is looked up once; beyond, each lane's by itself.
+constexpr int few_triangles = 4;
+
+// The texels of hits (u, v): in the picture whose numbers `real` and `number` give, HitMap::Triangle's in
+// order.
+template <class GiveReal, class GiveNumber, class Mask>
+HWY_INLINE Numbers TexelOf(const Reals u, const Reals v, const Mask back, GiveReal real, GiveNumber number) {
+  const Number n;
+  const Numbers one = hn::Set(n, 1);
+  const Reals x = hn::MulAdd(u, real(1), hn::MulAdd(v, real(2), real(0)));
+  const Reals y = hn::MulAdd(u, real(4), hn::MulAdd(v, real(5), real(3)));
+  const Numbers width = number(6), height = number(7);
+  // rounded towards 0: a hair outside is inside again
+  const Numbers column = hn::Min(hn::Sub(width, one), hn::ConvertTo(n, x));
+  const Numbers row = hn::Min(hn::Sub(height, one), hn::ConvertTo(n, y));
+  const Numbers first = hn::IfThenElse(back, number(9), number(8));
+  const Numbers texel = hn::Add(first, hn::Add(hn::Mul(row, width), column));
+  return hn::IfThenElse(hn::Lt(first, hn::Zero(n)), first, texel);
+}
+
+// Where lanes k .. hit; with `coherent`, most of them on few triangles.
+template <bool coherent>
 HWY_INLINE void FindTexels(const PacketScene& scene, int k, Flight& flight) {
   const Real d;
   const Word w;
   const Number n;
   const RTCHit16& hits = flight.rays.hit;
   const RTCRay16& rays = flight.rays.ray;
-  const auto* numbers = reinterpret_cast<const int32_t*>(scene.map->triangles().data());
-  const auto* reals = reinterpret_cast<const float*>(numbers);
-  const auto hit = hn::Ne(hn::Load(w, hits.geomID + k), hn::Set(w, RTC_INVALID_GEOMETRY_ID));
-  const auto hit_number = hn::RebindMask(n, hit);
-  const Numbers zero = hn::Zero(n), one = hn::Set(n, 1);
-
-  const Numbers triangle = hn::IfThenElseZero(hit_number, hn::BitCast(n, hn::Load(w, hits.primID + k)));
-  const Numbers at = hn::Mul(triangle, hn::Set(n, HitMap::words));
-  const auto real = [&](int q) { return hn::GatherIndex(d, reals, hn::Add(at, hn::Set(n, q))); };
-  const auto number = [&](const Numbers q) { return hn::GatherIndex(n, numbers, hn::Add(at, q)); };
-  // a lane without a hit holds no coordinates
-  const Reals u = hn::IfThenElseZero(hn::RebindMask(d, hit), hn::Load(d, hits.u + k));
-  const Reals v = hn::IfThenElseZero(hn::RebindMask(d, hit), hn::Load(d, hits.v + k));
-  const Reals x = hn::MulAdd(u, real(1), hn::MulAdd(v, real(2), real(0)));
-  const Reals y = hn::MulAdd(u, real(4), hn::MulAdd(v, real(5), real(3)));
-  const Numbers width = number(hn::Set(n, 6)), height = number(hn::Set(n, 7));
-  const Numbers column = hn::Max(zero, hn::Min(hn::Sub(width, one), hn::ConvertTo(n, x)));
-  const Numbers row = hn::Max(zero, hn::Min(hn::Sub(height, one), hn::ConvertTo(n, y)));
-
+  const HitMap::Triangle* triangles = scene.map->triangles().data();
+  const auto hit =
+      hn::RebindMask(n, hn::Ne(hn::Load(w, hits.geomID + k), hn::Set(w, RTC_INVALID_GEOMETRY_ID)));
+  const Numbers triangle = hn::BitCast(n, hn::Load(w, hits.primID + k));
+  const Reals u = hn::Load(d, hits.u + k), v = hn::Load(d, hits.v + k);
   // Embree's normal points to where the corners run counter-clockwise: the front
   const Reals facing =
       hn::MulAdd(hn::Load(d, hits.Ng_x + k), hn::Load(d, rays.dir_x + k),
                  hn::MulAdd(hn::Load(d, hits.Ng_y + k), hn::Load(d, rays.dir_y + k),
                             hn::Mul(hn::Load(d, hits.Ng_z + k), hn::Load(d, rays.dir_z + k))));
   const auto back = hn::RebindMask(n, hn::Ge(facing, hn::Zero(d)));
-  const Numbers first = number(hn::IfThenElse(back, hn::Set(n, 9), hn::Set(n, 8)));
-  const auto on_patch = hn::AndNot(hn::Lt(first, zero), hit_number);
-  const Numbers texel = hn::Add(first, hn::Add(hn::Mul(row, width), column));
-  hn::Store(hn::IfThenElse(on_patch, texel, hn::Set(n, -1)), n, flight.texels + k);
-  const int end = k + static_cast<int>(hn::Lanes(d));
-  for (int q = k; q < end; ++q) hwy::Prefetch(scene.map->texels().data() + (flight.texels[q] & INT32_MAX));
+  Numbers texel = hn::Set(n, scene.map->nothing());
+  auto rest = hit;
+  if constexpr (coherent) {
+    for (int round = 0; round < few_triangles; ++round) {
+      const intptr_t lane = hn::FindFirstTrue(n, rest);
+      if (lane < 0) break;
+      const auto met = static_cast<int32_t>(hits.primID[k + lane]);
+      const auto* reals = reinterpret_cast<const float*>(triangles + met);
+      const auto* numbers = reinterpret_cast<const int32_t*>(triangles + met);
+      const Numbers found = TexelOf(
+          u, v, back, [&](int q) { return hn::Set(d, reals[q]); },
+          [&](int q) { return hn::Set(n, numbers[q]); });
+      const auto same = hn::And(rest, hn::Eq(triangle, hn::Set(n, met)));
+      texel = hn::IfThenElse(same, found, texel);
+      rest = hn::AndNot(same, rest);
+    }
+  }
+  if (!coherent || !hn::AllFalse(n, rest)) {
+    const Numbers at = hn::Mul(hn::IfThenElseZero(rest, triangle), hn::Set(n, HitMap::words));
+    const auto* reals = reinterpret_cast<const float*>(triangles);
+    const auto* numbers = reinterpret_cast<const int32_t*>(triangles);
+    const Numbers found = TexelOf(
+        // a lane without a hit holds no coordinates
+        hn::IfThenElseZero(hn::RebindMask(d, rest), u), hn::IfThenElseZero(hn::RebindMask(d, rest), v), back,
+        [&](int q) { return hn::GatherIndex(d, reals, hn::Add(at, hn::Set(n, q))); },
+        [&](int q) { return hn::GatherIndex(n, numbers, hn::Add(at, hn::Set(n, q))); });
+    texel = hn::IfThenElse(rest, found, texel);
+  }
+  texel = hn::IfThenElse(hn::Lt(texel, hn::Zero(n)), hn::Set(n, scene.map->nothing()), texel);
+  hn::Store(texel, n, flight.texels + k);
+  const int end = k + static_cast<int>(hn::Lanes(n));
+  for (int q = k; q < end; ++q) hwy::Prefetch(scene.map->texels().data() + flight.texels[q]);
 }
 
 // The patches there to `met`; gives the lanes in doubt.
@@ -196,25 +280,23 @@ HWY_INLINE uint64_t FindPatches(const PacketScene& scene, const int32_t* enclosu
                                 const Flight& flight, int k, uint32_t* met) {
   const Word w;
   const Number n;
-  const Numbers nothing = hn::Set(n, scene.nothing), zero = hn::Zero(n);
-  const Numbers texel = hn::Load(n, flight.texels + k);
-  const auto off = hn::Lt(texel, zero);
-  const Numbers patch = hn::IfThenElse(
-      off, nothing, hn::GatherIndex(n, scene.map->texels().data(), hn::IfThenZeroElse(off, texel)));
-
-  const Numbers home = hn::Load(n, enclosure + k);
-  const auto asks = hn::Lt(patch, zero);
-  const auto lost = hn::Eq(patch, nothing);
-  const auto open = hn::Lt(home, zero);
-  auto doubtful = hn::Or(asks, lost);
-  const Numbers known = hn::IfThenElse(asks, nothing, patch);
+  const Words nothing = hn::Set(w, static_cast<uint32_t>(scene.nothing));
+  // one by one: a vector gather waits for the slowest before it asks for the next
+  const int32_t* texels = scene.map->texels().data();
+  alignas(64) int32_t patches[lanes];
+  for (size_t q = 0; q < hn::Lanes(n); ++q) patches[q] = texels[flight.texels[k + q]];
+  const Words patch = hn::BitCast(w, hn::Load(n, patches));
+  // HitMap::ask is beyond all numbers
+  const Words known = hn::Min(patch, nothing);
+  auto doubtful = hn::RebindMask(n, hn::Eq(known, nothing));
   if (scene.enclosures) {
-    const auto elsewhere = hn::Ne(hn::GatherIndex(n, scene.enclosures, known), home);
-    doubtful = hn::Or(doubtful, hn::AndNot(open, elsewhere));
+    const Numbers home = hn::Load(n, enclosure + k);
+    const auto elsewhere = hn::Ne(hn::GatherIndex(n, scene.enclosures, hn::BitCast(n, known)), home);
+    doubtful = hn::Or(doubtful, hn::AndNot(hn::Lt(home, hn::Zero(n)), elsewhere));
   }
-  doubtful = hn::And(doubtful, hn::Ne(hn::Load(n, valid + k), zero));
-  hn::StoreU(hn::BitCast(w, known), w, met + k);
+  hn::StoreU(known, w, met + k);
   if (hn::AllFalse(n, doubtful)) return 0;
+  doubtful = hn::And(doubtful, hn::Ne(hn::Load(n, valid + k), hn::Zero(n)));
   uint8_t bits[8] = {};
   hn::StoreMaskBits(n, doubtful, bits);
   return bits[0] | static_cast<uint64_t>(bits[1]) << 8;
@@ -223,7 +305,7 @@ HWY_INLINE uint64_t FindPatches(const PacketScene& scene, const int32_t* enclosu
 HWY_INLINE DoubtfulRay Doubt(const PacketScene& scene, const Flight& flight, int k, int ray, int lane) {
   const RTCRay16& rays = flight.rays.ray;
   const RTCHit16& hits = flight.rays.hit;
-  const bool asks = flight.texels[k] >= 0 && scene.map->texels()[flight.texels[k]] == HitMap::ask;
+  const bool asks = scene.map->texels()[flight.texels[k]] == HitMap::ask;
   const float facing =
       hits.Ng_x[k] * rays.dir_x[k] + hits.Ng_y[k] * rays.dir_y[k] + hits.Ng_z[k] * rays.dir_z[k];
   return {ray,

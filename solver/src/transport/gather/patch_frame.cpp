@@ -15,6 +15,10 @@ constexpr double surface_offset = 4e-7;
 // Above what float moves an origin along its patch.
 constexpr double margin = 1e-6;
 
+// Quads whose fourth corner is this close to a parallelogram's are one: within what float moves it, and a
+// share of the patch that light does not feel.
+constexpr double skew = 1e-7, relative_skew = 1e-4;
+
 }  // namespace
 
 double outline_margin(const RayScene& occluders) {
@@ -35,6 +39,9 @@ PatchFrame patch_frame(const PatchMesh& mesh, int patch, const RayScene& occlude
   const double in_first = frame.first.cross(frame.second).norm();
   const double in_other = frame.second.cross(frame.third).norm();
   frame.share = in_first / (in_first + in_other);
+
+  frame.parallelogram = count == 4 && (frame.second - frame.first - frame.third).norm() <=
+                                          std::min(skew, relative_skew * frame.second.norm());
 
   double clearance = std::numeric_limits<double>::infinity();
   for (int k = 0; k < count; ++k) {
