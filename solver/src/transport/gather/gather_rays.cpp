@@ -228,7 +228,7 @@ void GatherRays::settle(const GatherOperator::Packet& packet, int first,
     std::uint32_t& end = met[static_cast<std::size_t>(ray.ray) * lanes + ray.lane];
     end = settled(patch, ray);
     ++asked;
-    ++(end == static_cast<std::uint32_t>(mesh_.size()) ? lost : found);
+    if (ray.lost) ++(end == static_cast<std::uint32_t>(mesh_.size()) ? lost : found);
     if (closed && end == static_cast<std::uint32_t>(mesh_.size())) {
       end = replaced(patch, mixed_seed(seed_ ^ replacement_stream, first + ray.ray));
     }
