@@ -205,8 +205,10 @@ void StoredRays(benchmark::State& state) {
   std::vector<std::uint32_t> met(rays.packets_together() * count * lanes);
   measure(state, scene, [&] {
     const std::size_t packets = rays.packets().size(), together = rays.packets_together();
+    std::vector<PacketFrame> frames;
     for (std::size_t first = 0; first < packets; first += together) {
-      rays.trace_together(first, std::min(together, packets - first), 0, count, met.data());
+      rays.aim(first, std::min(together, packets - first), frames);
+      rays.trace_together(first, frames, 0, count, met.data());
     }
     benchmark::DoNotOptimize(met.data());
   });

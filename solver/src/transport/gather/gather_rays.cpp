@@ -46,8 +46,12 @@ constexpr int sorted_rays = 64;
 // Share of a quad's area in its second triangle, below which no point falls there.
 constexpr double least_share = 0x1p-24;
 
-// Rays of one packet between two visits to the sums: their patches stay in the first cache.
-constexpr int rays_a_visit = 128;
+// Rays of one packet between two visits to the sums: their patches, 32 kB, stay in the first cache or close
+// by.
+constexpr int rays_a_visit = 512;
+
+// Rays of one packet after which the doubtful ones are settled.
+constexpr int rays_a_doubt = 32;
 
 /// Whether most packets hold patches of many polygons in a large scene.
 bool rough(const PatchMesh& mesh) {
@@ -111,14 +115,18 @@ PacketFrame GatherRays::frame_of(const GatherOperator::Packet& packet, std::uint
   PacketFrame frame;
   bool triangles = true, parallelograms = true;
   const Vec3 tangent = mesh_.normals[packet[0]].unitOrthogonal();
+  Vec3 normal = Vec3::Zero(), aligned = normal, bitangent = normal;
   for (int k = 0; k < lanes; ++k) {
     const int patch = packet[k] >= 0 ? packet[k] : packet[0];
     const PatchFrame own = patch_frame(mesh_, patch, occluders_);
-    // neighbours turn their frames alike, so that equal numbers are nearly equal directions
-    Vec3 aligned = tangent - tangent.dot(own.normal) * own.normal;
-    if (aligned.norm() < 0.1) aligned = own.normal.unitOrthogonal();
-    aligned.normalize();
-    const Vec3 bitangent = own.normal.cross(aligned);
+    if (own.normal != normal) {
+      // neighbours turn their frames alike, so that equal numbers are nearly equal directions
+      normal = own.normal;
+      aligned = tangent - tangent.dot(normal) * normal;
+      if (aligned.norm() < 0.1) aligned = normal.unitOrthogonal();
+      aligned.normalize();
+      bitangent = normal.cross(aligned);
+    }
     for (int c = 0; c < 3; ++c) {
       frame.corner[c][k] = static_cast<float>(own.corner[c]);
       frame.first[c][k] = static_cast<float>(own.first[c]);
@@ -134,10 +142,11 @@ PacketFrame GatherRays::frame_of(const GatherOperator::Packet& packet, std::uint
     triangles = triangles && mesh_.corner_count(patch) == 3;
     parallelograms = parallelograms && own.parallelogram;
     const std::uint64_t seed = mixed_seed(seed_of_all ^ own_stream, patch);
-    for (int q = 0; q < 4; ++q) {
-      const std::uint32_t digits = q < 2 ? ~0u : lower_digits_;
-      frame.turned[q][k] = static_cast<std::uint32_t>(mixed_seed(seed, q)) & digits;
-    }
+    const std::uint64_t place = mixed_seed(seed, 0), direction = mixed_seed(seed, 1);
+    frame.turned[0][k] = static_cast<std::uint32_t>(place);
+    frame.turned[1][k] = static_cast<std::uint32_t>(place >> 32);
+    frame.turned[2][k] = static_cast<std::uint32_t>(direction) & lower_digits_;
+    frame.turned[3][k] = static_cast<std::uint32_t>(direction >> 32) & lower_digits_;
     frame.enclosure[k] = enclosures_[patch];
     frame.valid[k] = packet[k] >= 0 ? -1 : 0;
   }
@@ -148,28 +157,52 @@ PacketFrame GatherRays::frame_of(const GatherOperator::Packet& packet, std::uint
   return frame;
 }
 
-void GatherRays::trace(std::size_t packet, int first, int count, std::uint32_t* met) const {
-  const PacketFrame frame = frame_of(packets_[packet], seed_);
+void GatherRays::trace(const PacketScene& scene, const GatherOperator::Packet& packet,
+                       const PacketFrame& frame, int first, int count, std::uint32_t* met) const {
+  PacketScene asking = scene;
+  const bool closed = std::any_of(packet.begin(), packet.end(),
+                                  [&](int patch) { return patch >= 0 && enclosures_[patch] >= 0; });
   std::vector<DoubtfulRay> doubtful;
-  trace_packet(scene_, frame, first, count, met, doubtful);
-  settle(packets_[packet], first, doubtful, met);
+  Certainty certainty;
+  for (int q = 0; q < count; q += rays_a_doubt) {
+    std::uint32_t* ends = met + static_cast<std::size_t>(q) * lanes;
+    doubtful.clear();
+    asking.doubt_lost = closed || !certainty.enough();
+    trace_packet(asking, frame, first + q, std::min(rays_a_doubt, count - q), ends, doubtful);
+    if (!doubtful.empty()) settle(packet, first + q, doubtful, ends, certainty);
+  }
+}
+
+bool GatherRays::Certainty::enough() const {
+  return lost >= lost_for_certain && lost > wrong_among * found;
+}
+
+void GatherRays::trace(std::size_t packet, int first, int count, std::uint32_t* met) const {
+  trace(scene_, packets_[packet], frame_of(packets_[packet], seed_), first, count, met);
 }
 
 int GatherRays::rays_together() const {
   return together_ == 1 ? rays_a_visit : sorted_rays;
 }
 
-void GatherRays::trace_together(std::size_t first_packet, std::size_t packets, int first, int count,
-                                std::uint32_t* met) const {
+void GatherRays::aim(std::size_t first_packet, std::size_t packets, std::vector<PacketFrame>& frames) const {
+  frames.resize(packets);
+  for (std::size_t p = 0; p < packets; ++p) frames[p] = frame_of(packets_[first_packet + p], seed_);
+}
+
+void GatherRays::trace_together(std::size_t first_packet, std::span<const PacketFrame> frames, int first,
+                                int count, std::uint32_t* met, PatchRows rows) const {
+  PacketScene scene = scene_;
+  scene.rows = rows;
   const std::size_t of_packet = static_cast<std::size_t>(count) * lanes;
   if (together_ == 1) {
-    for (std::size_t p = 0; p < packets; ++p) trace(first_packet + p, first, count, met + p * of_packet);
+    for (std::size_t p = 0; p < frames.size(); ++p) {
+      trace(scene, packets_[first_packet + p], frames[p], first, count, met + p * of_packet);
+    }
     return;
   }
-  std::vector<PacketFrame> frames;
-  for (std::size_t p = 0; p < packets; ++p) frames.push_back(frame_of(packets_[first_packet + p], seed_));
   static thread_local SortedRays sorted;
-  trace_sorted(scene_, frames, first, count, met, sorted);
+  trace_sorted(scene, frames, first, count, met, sorted);
   std::stable_sort(sorted.doubtful.begin(), sorted.doubtful.end(),
                    [](const DoubtfulRay& a, const DoubtfulRay& b) {
                      return std::pair(a.ray, a.lane) < std::pair(b.ray, b.lane);
@@ -181,15 +214,14 @@ void GatherRays::trace_together(std::size_t first_packet, std::size_t packets, i
       of_one.push_back(*from);
       of_one.back().ray -= packet * count;
     }
-    settle(packets_[first_packet + packet], first, of_one, met + packet * of_packet);
+    Certainty certainty;
+    settle(packets_[first_packet + packet], first, of_one, met + packet * of_packet, certainty);
   }
 }
 
 void GatherRays::trace_sample(std::size_t packet, int sample, int count, std::uint32_t* met) const {
   const PacketFrame frame = frame_of(packets_[packet], mixed_seed(seed_ ^ sample_stream, sample));
-  std::vector<DoubtfulRay> doubtful;
-  trace_packet(scene_, frame, 0, count, met, doubtful);
-  settle(packets_[packet], 0, doubtful, met);
+  trace(scene_, packets_[packet], frame, 0, count, met);
 }
 
 bool GatherRays::set_count(int count) {
@@ -213,22 +245,21 @@ void GatherRays::trace_patch(int patch, const PatchNet& net, std::uint64_t seed,
   PacketScene scene = scene_;
   scene.words = net.words_.data();
   scene.lane_words = true;
-  std::vector<DoubtfulRay> doubtful;
-  trace_packet(scene, frame, 0, net.blocks_, met, doubtful);
-  settle(packet, 0, doubtful, met);
+  trace(scene, packet, frame, 0, net.blocks_, met);
 }
 
 void GatherRays::settle(const GatherOperator::Packet& packet, int first,
-                        const std::vector<DoubtfulRay>& doubtful, std::uint32_t* met) const {
-  int asked = 0, lost = 0, found = 0;
+                        std::span<const DoubtfulRay> doubtful, std::uint32_t* met,
+                        Certainty& certainty) const {
+  int asked = 0;
   for (const DoubtfulRay& ray : doubtful) {
     const int patch = packet[ray.lane];
     const bool closed = enclosures_[patch] >= 0;
-    if (ray.lost && !closed && lost >= lost_for_certain && lost > wrong_among * found) continue;
+    if (ray.lost && !closed && certainty.enough()) continue;
     std::uint32_t& end = met[static_cast<std::size_t>(ray.ray) * lanes + ray.lane];
     end = settled(patch, ray);
     ++asked;
-    if (ray.lost) ++(end == static_cast<std::uint32_t>(mesh_.size()) ? lost : found);
+    if (ray.lost) ++(end == static_cast<std::uint32_t>(mesh_.size()) ? certainty.lost : certainty.found);
     if (closed && end == static_cast<std::uint32_t>(mesh_.size())) {
       end = replaced(patch, mixed_seed(seed_ ^ replacement_stream, first + ray.ray));
     }

@@ -32,6 +32,8 @@ void Trace(const PacketScene& scene, const PacketFrame& frame, int first, int co
   NetPoints points;
   for (int q = 0; q < count; ++q) {
     Flight& flight = flights[q % 2];
+    Flight& last = flights[(q + 1) % 2];
+    if (q >= 2) Land(scene, frame, flight, q - 2, met, doubtful);
     const int at = first + q;
     if (scene.lane_words || q == 0 || at % lanes == 0) {
       points.Scramble(scene.words, scene.lane_words ? at : at / lanes, frame.seeds);
@@ -41,11 +43,16 @@ void Trace(const PacketScene& scene, const PacketFrame& frame, int first, int co
     float* const directions[3] = {ray.dir_x, ray.dir_y, ray.dir_z};
     StartRays(points, scene.lane_words ? -1 : at % lanes, frame, origins, directions);
     ResetHits(flight.rays);
+    if (q >= 1) {
+      for (int k = 0; k < lanes; k += step) FindTexels(scene, k, last);
+    }
     rtcIntersect16(frame.valid, static_cast<RTCScene>(scene.embree), &context, &flight.rays);
-    for (int k = 0; k < lanes; k += step) FindTexels<true>(scene, k, flight);
-    if (q > 0) Land(scene, frame, flights[(q - 1) % 2], q - 1, met, doubtful);
   }
-  if (count > 0) Land(scene, frame, flights[(count - 1) % 2], count - 1, met, doubtful);
+  if (count == 0) return;
+  Flight& last = flights[(count - 1) % 2];
+  for (int k = 0; k < lanes; k += step) FindTexels(scene, k, last);
+  if (count > 1) Land(scene, frame, flights[count % 2], count - 2, met, doubtful);
+  Land(scene, frame, last, count - 1, met, doubtful);
 }
 
 }  // namespace

@@ -31,6 +31,12 @@ struct alignas(64) PacketFrame {
   Shape shape;                ///< of all lanes
 };
 
+/// A row of memory for each patch.
+struct PatchRows {
+  const char* first = nullptr;  ///< null: none
+  std::size_t bytes = 0;        ///< of a row
+};
+
 /// What all packets share.
 struct PacketScene {
   void* embree = nullptr;                ///< RTCScene
@@ -39,7 +45,9 @@ struct PacketScene {
   const HitMap* map = nullptr;
   std::int32_t nothing = 0;  ///< what a lost ray met
   const std::int32_t* enclosures =
-      nullptr;  ///< of each patch, and of `nothing`; null: a ray cannot leave its own
+      nullptr;             ///< of each patch, and of `nothing`; null: a ray cannot leave its own
+  PatchRows rows;          ///< those of patches met will be read soon
+  bool doubt_lost = true;  ///< lost rays are doubtful
 };
 
 /// reversed_sobol_words for `count` points, and up to a multiple of 16: blocks of 16 points, 4 rows a block.

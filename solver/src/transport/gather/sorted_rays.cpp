@@ -94,7 +94,7 @@ void TraceSorted(const PacketScene& scene, const PacketFrame* frames, int packet
     rtcIntersect16(valid, static_cast<RTCScene>(scene.embree), &context, &flight.rays);
     uint64_t doubts = 0;
     for (int k = 0; k < lanes; k += step) {
-      FindTexels<false>(scene, k, flight);
+      FindTexels(scene, k, flight);
       doubts |= FindPatches(scene, enclosure, valid, flight, k, ends) << k;
     }
     for (int k = 0; k < lanes; ++k) met[sorted.order[begin + k]] = ends[k];
