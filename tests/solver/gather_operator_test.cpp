@@ -98,6 +98,27 @@ TEST(GatherOperator, AgreesWithTheDenseOperator) {
   EXPECT_LT(error, 2e-3);
 }
 
+TEST(GatherOperator, StartsRaysEvenlyOnQuadsThatAreNoParallelograms) {
+  // a frustum: its four walls are trapezoids
+  Boxes boxes = Boxes().add({0, 0, 0}, {1, 1, 1}, true);
+  for (Vec3& x : boxes.vertices) {
+    if (x[2] > 0.5) x.head<2>() = (0.4 * x.head<2>().array() + 0.1).matrix();
+  }
+  const PatchMesh mesh = boxes.mesh();
+  const PatchField x = PatchField::Identity(mesh.size(), mesh.size());
+  FormFactorOptions accurate;
+  accurate.accuracy = 1e-6;
+  const RayScene occluders(mesh.occluders);
+  const ClosedOperator dense =
+      close_rows(form_factors(mesh, accurate).exchange_areas, mesh.areas, find_enclosures(mesh, occluders));
+
+  const PatchField error = applied(*gather_of(mesh, 1 << 14), x) - applied(*dense.transport, x);
+
+  // over 40 seeds 0.07 %, on the worst of the 36 pairs 0.11 %: four of these; a parallelogram in the place of
+  // a trapezoid is off by per cents
+  EXPECT_LT(error.cwiseAbs().maxCoeff(), 4.5e-3);
+}
+
 TEST(GatherOperator, ConvergesFasterThanRandomSampling) {
   const PatchMesh mesh = cut_faces(room_with_a_box(), 4);
   const PatchField x = waves(mesh);

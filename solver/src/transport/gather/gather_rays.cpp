@@ -1,5 +1,7 @@
 #include "transport/gather/gather_rays.h"
 
+#include <hwy/cache_control.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -51,7 +53,7 @@ constexpr double least_share = 0x1p-24;
 constexpr int rays_a_visit = 512;
 
 // Rays of one packet after which the doubtful ones are settled.
-constexpr int rays_a_doubt = 32;
+constexpr int rays_a_doubt = 64;
 
 /// Whether most packets hold patches of many polygons in a large scene.
 bool rough(const PatchMesh& mesh) {
@@ -111,8 +113,21 @@ const PatchLocator& GatherRays::locator() const {
   return *locator_;
 }
 
+/// Calls for all that frame_of() will read: patch by patch it would wait for each.
+void GatherRays::call_for(const GatherOperator::Packet& packet) const {
+  for (const int patch : packet) {
+    if (patch < 0) return;
+    hwy::Prefetch(&mesh_.centroids[patch]);
+    hwy::Prefetch(&mesh_.normals[patch]);
+    for (int k = 0; k < mesh_.corner_count(patch); ++k) {
+      hwy::Prefetch(&mesh_.vertices[mesh_.corners[patch][k]]);
+    }
+  }
+}
+
 PacketFrame GatherRays::frame_of(const GatherOperator::Packet& packet, std::uint64_t seed_of_all) const {
   PacketFrame frame;
+  call_for(packet);
   bool triangles = true, parallelograms = true;
   const Vec3 tangent = mesh_.normals[packet[0]].unitOrthogonal();
   Vec3 normal = Vec3::Zero(), aligned = normal, bitangent = normal;

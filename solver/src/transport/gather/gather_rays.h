@@ -74,6 +74,7 @@ class GatherRays {
   std::int64_t asked_twice() const { return asked_twice_; }
 
  private:
+  void call_for(const GatherOperator::Packet& packet) const;
   PacketFrame frame_of(const GatherOperator::Packet& packet, std::uint64_t seed) const;
   void trace(const PacketScene& scene, const GatherOperator::Packet& packet, const PacketFrame& frame,
              int first, int count, std::uint32_t* met) const;
