@@ -41,6 +41,14 @@ HWY_INLINE Words Scrambled(const Words word, const Words seed) {
   return x;
 }
 
+#if HWY_TARGET == HWY_SCALAR
+
+HWY_INLINE Words BitsReversed(const Words word) {
+  return hn::Set(Word(), bits_reversed(hn::GetLane(word)));
+}
+
+#else
+
 // Bits of a byte by two tables of half bytes, then the bytes of a word.
 HWY_INLINE Words BitsReversed(const Words word) {
   const hn::Repartition<uint8_t, Word> d;
@@ -57,6 +65,8 @@ HWY_INLINE Words BitsReversed(const Words word) {
                              hn::TableLookupBytes(hn::LoadDup128(d, upper), high));
   return hn::BitCast(w, hn::TableLookupBytes(turned, hn::LoadDup128(d, bytes)));
 }
+
+#endif
 
 // 24 bits as a fraction in [0, 1).
 HWY_INLINE Reals Fraction(const Words word) {
