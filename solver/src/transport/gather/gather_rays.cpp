@@ -208,7 +208,8 @@ void GatherRays::aim(std::size_t first_packet, std::size_t packets, std::vector<
 void GatherRays::trace_together(std::size_t first_packet, std::span<const PacketFrame> frames, int first,
                                 int count, std::uint32_t* met, PatchRows rows) const {
   PacketScene scene = scene_;
-  scene.rows = rows;
+  // of rays that are sorted first, the rows are read much later
+  if (together_ == 1) scene.rows = rows;
   const std::size_t of_packet = static_cast<std::size_t>(count) * lanes;
   if (together_ == 1) {
     for (std::size_t p = 0; p < frames.size(); ++p) {
