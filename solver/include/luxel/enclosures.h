@@ -40,7 +40,7 @@ Enclosures find_enclosures(const PatchMesh& mesh, const RayScene& occluders, int
 
 /// Measures the shares of the patches of open enclosures anew, with as many rays as bring their standard
 /// errors down to the accuracy, but at most 64 times as many as before and `most_rays` in all: what the row
-/// sums of an open scene are compared with. Cost: about 0.2 us a ray.
+/// sums of an open scene are compared with. Cost: about 0.3 us a ray.
 /// @param enclosures      as find_enclosures gave them, with rays_per_patch
 /// @param accuracy        standard error of a share, > 0
 void measure_shares(Enclosures& enclosures, const PatchMesh& mesh, const RayScene& occluders, double accuracy,

@@ -127,11 +127,10 @@ class Run {
     if ((emission_.array() == 0).all()) return;
     enter(PlanStage::measuring);
     const FormFactorReport& done = result_.form_factors;
-    const auto clipped = static_cast<double>(done.exact_pairs),
-               sampled = static_cast<double>(done.sampled_pairs);
     const double seconds =
         assembly_seconds(static_cast<double>(done.facing_pairs), options_.form_factors.accuracy) +
-        visibility_seconds(clipped, sampled);
+        visibility_seconds(static_cast<double>(done.exact_pairs), static_cast<double>(done.sampled_pairs),
+                           static_cast<double>(done.rays));
     OperatorErrorOptions probing;
     probing.accuracy = options_.form_factors.accuracy;
     probing.seed = options_.form_factors.seed;
