@@ -198,7 +198,9 @@ void fill_unoccluded(const ClusterTree& tree, double accuracy, ExchangeMatrix& e
     report.facing_pairs += tally.facing;
     error += 2 * tally.error;
   }
-  for (const WorkPatch& patch : tree.patches) total += metres_squared(tree, patch.area);
+  for (const WorkPatch& patch : tree.patches) {
+    if (patch.patch < tree.sky_begin) total += metres_squared(tree, patch.area);
+  }
   if (total > 0) report.estimated_error = error / total;
 }
 

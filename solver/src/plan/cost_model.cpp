@@ -45,6 +45,10 @@ constexpr double clipped_pair = 1e-6, clipped_flat = 0.33e-6, clipped_body_face 
 // A pair that rays decide, and one of a block that they sort, those in full sight counted.
 constexpr double crowded_pair = 1.8e-6, sorted_pair = 1e-6;
 
+// A pair of a patch and a part of the sky at accuracy 3e-2, growing as accuracy^-1/2 up to what clipping
+// takes.
+constexpr double sky_pair = 0.9e-6, clipped_sky_pair = 2.8e-6, sky_accuracy = 0.03;
+
 // The same once it is known how many pairs and rays there were.
 constexpr double any_clipped_pair = 2e-6, any_sampled_pair = 0.05e-6, any_ray = 0.06e-6;
 
@@ -152,6 +156,10 @@ double sorted_pair_seconds() {
 double few_rays_seconds(int rays, double faces) {
   const double doublings = std::log2(std::max(1.0, faces / few_faces));
   return 1e-6 * few_rays_cost(rays) * (1 + dearer_a_doubling * doublings);
+}
+
+double sky_seconds(double pairs, double accuracy) {
+  return pairs * std::min(sky_pair * std::sqrt(sky_accuracy / accuracy), clipped_sky_pair);
 }
 
 double visibility_seconds(double clipped_pairs, double sampled_pairs, double rays) {

@@ -52,6 +52,9 @@ double sorted_pair_seconds();
 /// A pair that so many rays measure, without more ado, among so many faces.
 double few_rays_seconds(int rays, double faces);
 
+/// Pairs of a patch and a part of the sky.
+double sky_seconds(double pairs, double accuracy);
+
 /// Pairs that were clipped or measured by rays, once their numbers are known.
 double visibility_seconds(double clipped_pairs, double sampled_pairs, double rays);
 

@@ -8,6 +8,7 @@
 #include "form_factors/cluster_tree.h"
 #include "form_factors/occluder_set.h"
 #include "form_factors/shaft.h"
+#include "form_factors/sky_box.h"
 #include "form_factors/visibility_choice.h"
 #include "luxel/plan.h"
 #include "plan/cost_model.h"
@@ -179,6 +180,7 @@ Cost estimated_cost(const Plan& plan, const PatchMesh& mesh, const Enclosures& e
     if (method == Method::automatic) method = cheapest_method(solved);
     cost.cpu_seconds += assembly_seconds(pairs * shares.facing, accuracy);
     cost.cpu_seconds += pairs * shares.visibility_seconds;
+    if (!system.closed) cost.cpu_seconds += sky_seconds(n * sky_quads(part.size()), accuracy);
     cost.cpu_seconds += closure_seconds(n, system.precision, system.closed) + solve_seconds(method, solved);
   }
   cost.bytes = planned_bytes(plan);
