@@ -68,6 +68,22 @@ TEST(SkyShares, AndRowsAddUpToOneToTheAccuracyAsked) {
   }
 }
 
+// A sheet with two sides between two squares: its sides lie in one plane, and one of them in one cluster with
+// what faces the other. They exchange nothing.
+TEST(SkyShares, AndRowsAddUpToOneAroundASheetWithTwoSides) {
+  SceneBuilder scene;
+  scene.quad({-0.5, -0.5, 0}, {0.5, -0.5, 0}, {0.5, 0.5, 0}, {-0.5, 0.5, 0}, 1);
+  scene.quad({-0.5, -0.5, 1}, {-0.5, 0.5, 1}, {0.5, 0.5, 1}, {0.5, -0.5, 1}, 1);
+  scene.quad({-0.25, -0.25, 0.5}, {0.25, -0.25, 0.5}, {0.25, 0.25, 0.5}, {-0.25, 0.25, 0.5}, 1, 2);
+  const PatchMesh mesh = scene.take();
+
+  const FormFactors found = with_sky(mesh, 1e-6);
+
+  EXPECT_EQ(found.exchange_areas(2, 3), 0);
+  const std::vector<double> rows = row_sums(found.exchange_areas, mesh.areas);
+  for (int i = 0; i < mesh.size(); ++i) EXPECT_NEAR(rows[i] + found.sky_shares[i], 1, 2e-6) << i;
+}
+
 TEST(SkyShares, LeaveTheFactorsBetweenPatchesAsTheyAre) {
   const PatchMesh mesh = yard(4, 2);
   FormFactorOptions options;
