@@ -158,6 +158,7 @@ void PlannedRun::report_systems(Assembly& assembly, const PlannedSolution& light
   record.options = options_.form_factors;
   record.form_factors = light.form_factors;
   record.closure = light.closure;
+  take_sky_shares(record.enclosures, light.sky_shares, options_.form_factors.accuracy);
   assembly.rows = row_errors(light.row_sums, assembly.mesh.areas, record.enclosures);
   report_operator(assembly, "dense", light.operator_bytes, assembling_, report);
 }

@@ -92,12 +92,6 @@ class Assembly {
     return heights_over(a, b).low >= -plane_tolerance && heights_over(b, a).low >= -plane_tolerance;
   }
 
-  // Whether each has points above the other's plane.
-  static bool facing(const WorkPatch& p, const WorkPatch& q) {
-    return span_along(q.outline, p.plane).high > plane_tolerance &&
-           span_along(p.outline, q.plane).high > plane_tolerance;
-  }
-
   void fill_block(const Cluster& a, const Cluster& b, int level, double error, Tally& tally) const {
     Tile tile;
     for (int i0 = a.begin; i0 < a.end; i0 += Tile::rows) {
@@ -124,10 +118,8 @@ class Assembly {
         add(tally, b.size(), writer_.write(tile, i, i + 1, b.begin, b.end),
             RuleChoice::error(level, nearest));
       } else {
-        for (int j = b.begin; j < b.end; ++j) {
-          // sheets that coincide, back to back, are in front of each other and yet exchange nothing
-          if (facing(tree_.patches[i], tree_.patches[j])) fill_pair(i, j, true, tally);
-        }
+        // the back of a sheet lies in the plane of its front: not behind, and not facing either
+        for (int j = b.begin; j < b.end; ++j) fill_if_facing(i, j, tally);
       }
     }
   }
@@ -135,14 +127,17 @@ class Assembly {
   // A small block that may hold pairs which see only part of each other, or nothing.
   void fill_straddling(const Cluster& a, const Cluster& b, Tally& tally) const {
     for (int i = a.begin; i < a.end; ++i) {
-      for (int j = b.begin; j < b.end; ++j) {
-        const WorkPatch &p = tree_.patches[i], &q = tree_.patches[j];
-        if (!facing(p, q)) continue;
-        const bool whole = span_along(q.outline, p.plane).low >= -plane_tolerance &&
-                           span_along(p.outline, q.plane).low >= -plane_tolerance;
-        fill_pair(i, j, whole, tally);
-      }
+      for (int j = b.begin; j < b.end; ++j) fill_if_facing(i, j, tally);
     }
+  }
+
+  void fill_if_facing(int i, int j, Tally& tally) const {
+    const WorkPatch &p = tree_.patches[i], &q = tree_.patches[j];
+    const Span over_p = span_along(q.outline, p.plane);
+    if (over_p.high <= plane_tolerance) return;
+    const Span over_q = span_along(p.outline, q.plane);
+    if (over_q.high <= plane_tolerance) return;
+    fill_pair(i, j, over_p.low >= -plane_tolerance && over_q.low >= -plane_tolerance, tally);
   }
 
   int pair_level(const WorkPatch& p, const WorkPatch& q, double apart) const {
@@ -206,7 +201,9 @@ void fill_unoccluded(const ClusterTree& tree, double accuracy, ExchangeMatrix& e
     report.facing_pairs += tally.facing;
     error += 2 * tally.error;
   }
-  for (const WorkPatch& patch : tree.patches) total += metres_squared(tree, patch.area);
+  for (const WorkPatch& patch : tree.patches) {
+    if (patch.patch < tree.sky_begin) total += metres_squared(tree, patch.area);
+  }
   if (total > 0) report.estimated_error = error / total;
 }
 

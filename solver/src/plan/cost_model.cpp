@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "form_factors/visibility_choice.h"
+
 namespace luxel {
 
 namespace {
@@ -30,15 +32,28 @@ constexpr double start = 0.02;
 constexpr double mesh_step = 3e-6;
 
 // Rays of find_enclosures().
-constexpr double enclosure_ray = 2e-7;
+constexpr double enclosure_ray = 3e-7;
 
 // A facing pair at accuracy 1e-3, and how much more each digit costs.
 constexpr double facing_pair = 12e-9;
 constexpr double pair_digit = 1.3;
 
-// A pair that is clipped, and one that rays decide.
-constexpr double clipped_pair = 2.5e-6;
-constexpr double crowded_pair = 1.8e-6;
+// A pair that is clipped, for each face that hides from both sides, and for each that is seen of a convex
+// body.
+constexpr double clipped_pair = 1e-6, clipped_flat = 0.33e-6, clipped_body_face = 0.8e-6;
+
+// A pair that rays decide, and one of a block that they sort, those in full sight counted.
+constexpr double crowded_pair = 1.8e-6, sorted_pair = 1e-6;
+
+// A pair of a patch and a part of the sky at accuracy 3e-2, growing as accuracy^-1/2 up to what clipping
+// takes.
+constexpr double sky_pair = 0.9e-6, clipped_sky_pair = 2.8e-6, sky_accuracy = 0.03;
+
+// The same once it is known how many pairs and rays there were.
+constexpr double any_clipped_pair = 2e-6, any_sampled_pair = 0.05e-6, any_ray = 0.06e-6;
+
+// How much dearer rays that measure single pairs become with each doubling of the faces.
+constexpr double few_faces = 64, dearer_a_doubling = 0.2;
 
 // Passes over the matrix that close_rows() takes.
 constexpr double closure_passes = 40;
@@ -126,8 +141,29 @@ double assembly_seconds(double facing_pairs, double accuracy) {
   return facing_pairs * facing_pair * std::pow(pair_digit, std::max(0.0, -3 - std::log10(accuracy)));
 }
 
-double visibility_seconds(double clipped_pairs, double crowded_pairs) {
-  return clipped_pairs * clipped_pair + crowded_pairs * crowded_pair;
+double clipped_pair_seconds(double flat_faces, double body_faces) {
+  return clipped_pair + clipped_flat * flat_faces + clipped_body_face * body_faces;
+}
+
+double crowded_pair_seconds() {
+  return crowded_pair;
+}
+
+double sorted_pair_seconds() {
+  return sorted_pair;
+}
+
+double few_rays_seconds(int rays, double faces) {
+  const double doublings = std::log2(std::max(1.0, faces / few_faces));
+  return 1e-6 * few_rays_cost(rays) * (1 + dearer_a_doubling * doublings);
+}
+
+double sky_seconds(double pairs, double accuracy) {
+  return pairs * std::min(sky_pair * std::sqrt(sky_accuracy / accuracy), clipped_sky_pair);
+}
+
+double visibility_seconds(double clipped_pairs, double sampled_pairs, double rays) {
+  return any_clipped_pair * clipped_pairs + any_sampled_pair * sampled_pairs + any_ray * rays;
 }
 
 double closure_seconds(double patches, Precision precision, bool closed) {

@@ -41,9 +41,22 @@ double enclosure_seconds(double rays);
 /// Form factors of so many facing pairs, as if nothing hid them.
 double assembly_seconds(double facing_pairs, double accuracy);
 
-/// Partly hidden pairs have more occluders between them than this when rays decide; else they are clipped.
-inline constexpr std::size_t few_occluders = 6;
-double visibility_seconds(double clipped_pairs, double crowded_pairs);
+/// A pair that is clipped by so many flat faces and faces of convex bodies in sight.
+double clipped_pair_seconds(double flat_faces, double body_faces);
+
+/// A pair that rays decide because many occluders stand between, and one of a block that rays sort as a
+/// whole.
+double crowded_pair_seconds();
+double sorted_pair_seconds();
+
+/// A pair that so many rays measure, without more ado, among so many faces.
+double few_rays_seconds(int rays, double faces);
+
+/// Pairs of a patch and a part of the sky.
+double sky_seconds(double pairs, double accuracy);
+
+/// Pairs that were clipped or measured by rays, once their numbers are known.
+double visibility_seconds(double clipped_pairs, double sampled_pairs, double rays);
 
 /// Row sums, and scaling them in a closed enclosure.
 double closure_seconds(double patches, Precision precision, bool closed);
