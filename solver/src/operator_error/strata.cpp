@@ -6,19 +6,20 @@
 
 namespace luxel {
 
-Strata::Strata(std::span<const GatherOperator::Packet> packets, const std::vector<double>& areas, int count)
-    : count_(count), of_patch_(areas.size(), 0) {
-  order_.reserve(areas.size());
+Strata::Strata(std::span<const GatherOperator::Packet> packets, const std::vector<double>& measures,
+               int count)
+    : count_(count), of_patch_(measures.size(), 0) {
+  order_.reserve(measures.size());
   for (const auto& packet : packets) {
     for (const int patch : packet) {
       if (patch >= 0) order_.push_back(patch);
     }
   }
-  double area = 0;
-  for (const int patch : order_) up_to_.push_back(area += areas[patch]);
+  double measure = 0;
+  for (const int patch : order_) up_to_.push_back(measure += measures[patch]);
   for (std::size_t k = 0; k < order_.size(); ++k) {
-    const double middle = up_to_[k] - areas[order_[k]] / 2;
-    of_patch_[order_[k]] = std::clamp(static_cast<int>(middle / area * count), 0, count - 1);
+    const double middle = up_to_[k] - measures[order_[k]] / 2;
+    of_patch_[order_[k]] = std::clamp(static_cast<int>(middle / measure * count), 0, count - 1);
   }
 }
 

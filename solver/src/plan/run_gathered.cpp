@@ -6,7 +6,6 @@
 #include "luxel/input_error.h"
 #include "luxel/plan.h"
 #include "operator_error/coarse_exchange.h"
-#include "operator_error/probed_error.h"
 #include "operator_error/strata.h"
 #include "plan/cost_model.h"
 #include "plan/decisions.h"
@@ -127,6 +126,8 @@ GatheredRun run_gathered(const PatchMesh& mesh, const PlanOptions& options, cons
   planned.operator_bytes = run.gather.bytes;
   planned.rays = run.gather.rays + run.gather.shadow_rays;
   planned.reciprocity_error = reciprocity_error(*light.stored);
+  light.stored.reset();
+  light.rays.reset();
 
   if (options.error_bar && !run.gather.partial) {
     enter(PlanStage::measuring);
@@ -135,9 +136,8 @@ GatheredRun run_gathered(const PatchMesh& mesh, const PlanOptions& options, cons
     probing.seed = options.form_factors.seed;
     probing.most_rays = error_bar_share * static_cast<double>(planned.rays);
     try {
-      planned.operator_error =
-          probed_error(mesh, occluders, *light.rays, *light.stored, rho_solved, emitted_solved,
-                       light.solution.light, planned.row_sums, probing, listener.progress);
+      planned.operator_error = operator_error(mesh, occluders, rho_solved, emitted_solved, light.solution.light,
+                                              planned.row_sums, probing, listener.progress);
     } catch (const Cancelled&) {
       if (!options.keep_partial) throw;
     }
