@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 namespace luxel {
 
@@ -21,6 +22,9 @@ constexpr double cells_a_patch = 2;
 
 // Patches smaller than the largest of their sheet by more powers of two than this share a grid.
 constexpr int most_sizes = 12;
+
+// Look-ups whose memory is on its way at a time.
+constexpr int prefetched = 32;
 
 Vec3 triangle_normal(const Occluders& occluders, int triangle) {
   const auto& [a, b, c] = occluders.triangles[triangle];
@@ -194,21 +198,23 @@ double PatchLocator::depth(int patch, const Vec3& point) const {
   return depth;
 }
 
+Eigen::Array2i PatchLocator::Grid::first_cell(const Eigen::Array2d& at) const {
+  return (at - 0.5).floor().cast<int>().max(0).min(Eigen::Array2i(nx, ny) - 1);
+}
+
+Eigen::Array2i PatchLocator::Grid::last_cell(const Eigen::Array2d& at) const {
+  return (at + 0.5).floor().cast<int>().max(0).min(Eigen::Array2i(nx, ny) - 1);
+}
+
 int PatchLocator::patch_at(int triangle, bool front, const Vec3& point) const {
-  const Sheet& sheet = sheets_[2 * mesh_.occluders.polygons[triangle] + (front ? 0 : 1)];
+  const Sheet& sheet = sheet_of(triangle, front);
   const auto near = [&](const Grid& grid, auto&& visit) {
-    const Vec3 x = point - grid.origin;
-    const double s = x.dot(grid.u), t = x.dot(grid.v);
-    const auto from = [](double at, int cells) {
-      return std::clamp(static_cast<int>(std::floor(at - 0.5)), 0, cells - 1);
-    };
-    const auto to = [](double at, int cells) {
-      return std::clamp(static_cast<int>(std::floor(at + 0.5)), 0, cells - 1);
-    };
-    for (int j = from(t, grid.ny); j <= to(t, grid.ny); ++j) {
-      for (int i = from(s, grid.nx); i <= to(s, grid.nx); ++i) {
-        const int* cell = &grid.cells[static_cast<std::size_t>(j) * grid.nx + i];
-        const auto px = static_cast<float>(s - i - 0.5), py = static_cast<float>(t - j - 0.5);
+    const Eigen::Array2d at = grid.at(point);
+    const Eigen::Array2i from = grid.first_cell(at), to = grid.last_cell(at);
+    for (int j = from[1]; j <= to[1]; ++j) {
+      for (int i = from[0]; i <= to[0]; ++i) {
+        const int* cell = grid.cell(i, j);
+        const auto px = static_cast<float>(at[0] - i - 0.5), py = static_cast<float>(at[1] - j - 0.5);
         for (int k = cell[0]; k < cell[1]; ++k) {
           if (visit(outlines_[k], px, py)) return outlines_[k].patch;
         }
@@ -245,6 +251,40 @@ int PatchLocator::patch_at(int triangle, bool front, const Vec3& point) const {
     });
   }
   return nearest;
+}
+
+std::vector<int> PatchLocator::patches_at(std::span<const RayScene::Hit> hits,
+                                          std::span<const Vec3> points) const {
+  if (points.size() != hits.size()) {
+    throw std::invalid_argument("PatchLocator::patches_at: hits and points differ in number");
+  }
+  std::vector<int> patches(hits.size(), -1);
+  std::array<std::array<const int*, 2>, prefetched> rows;  // the cells to be searched begin there
+  for (std::size_t begin = 0; begin < hits.size(); begin += prefetched) {
+    const std::size_t count = std::min<std::size_t>(prefetched, hits.size() - begin);
+    for (std::size_t k = 0; k < count; ++k) {
+      const RayScene::Hit& hit = hits[begin + k];
+      rows[k] = {nullptr, nullptr};
+      if (hit.primitive < 0) continue;
+      const Sheet& sheet = sheet_of(hit.primitive, hit.front);
+      if (sheet.count == 0) continue;
+      const Grid& grid = grids_[sheet.first];
+      const Eigen::Array2d at = grid.at(points[begin + k]);
+      const Eigen::Array2i from = grid.first_cell(at), to = grid.last_cell(at);
+      rows[k] = {grid.cell(from[0], from[1]), grid.cell(from[0], to[1])};
+      for (const int* row : rows[k]) __builtin_prefetch(row);
+    }
+    for (std::size_t k = 0; k < count; ++k) {
+      for (const int* row : rows[k]) {
+        if (row) __builtin_prefetch(&outlines_[std::min<std::size_t>(*row, outlines_.size() - 1)]);
+      }
+    }
+    for (std::size_t k = 0; k < count; ++k) {
+      const RayScene::Hit& hit = hits[begin + k];
+      if (hit.primitive >= 0) patches[begin + k] = patch_at(hit.primitive, hit.front, points[begin + k]);
+    }
+  }
+  return patches;
 }
 
 }  // namespace luxel

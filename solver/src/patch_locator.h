@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "luxel/patch_mesh.h"
+#include "luxel/ray_scene.h"
 
 namespace luxel {
 
@@ -22,6 +23,10 @@ class PatchLocator {
   /// [m], or -1: that side is the back of whatever stands there. Points off every outline by less than 1e-6
   /// of the scene's diagonal belong to the nearest patch.
   int patch_at(int triangle, bool front, const Vec3& point) const;
+  /// The same for what many rays met, -1 for those that met nothing; memory is called for in time.
+  /// @param points  where they met it [m]
+  /// @throws std::invalid_argument if the lengths differ
+  std::vector<int> patches_at(std::span<const RayScene::Hit> hits, std::span<const Vec3> points) const;
 
  private:
   /// A patch in its cell's coordinates: the cell is a unit square around the origin. Triangles repeat their
@@ -35,6 +40,12 @@ class PatchLocator {
     Vec3 origin, u, v;  // ((x - origin) . u, (x - origin) . v) is (i, j)
     int nx = 0, ny = 0;
     std::vector<int> cells;
+
+    Eigen::Array2d at(const Vec3& point) const { return {(point - origin).dot(u), (point - origin).dot(v)}; }
+    /// The first and the last cell along each axis that may hold what lies at (i, j).
+    Eigen::Array2i first_cell(const Eigen::Array2d& at) const;
+    Eigen::Array2i last_cell(const Eigen::Array2d& at) const;
+    const int* cell(int i, int j) const { return &cells[static_cast<std::size_t>(j) * nx + i]; }
   };
   /// One side of a polygon: grids_[first] .. with `count` grids, or with none the patch `first`, or -1.
   struct Sheet {
@@ -42,6 +53,9 @@ class PatchLocator {
   };
   struct Box;
 
+  const Sheet& sheet_of(int triangle, bool front) const {
+    return sheets_[2 * mesh_.occluders.polygons[triangle] + (front ? 0 : 1)];
+  }
   std::vector<Grid> grids_of(std::span<const int> patches, int first_outline);
   Grid grid_of(std::span<const Box> boxes, const Vec3& u, const Vec3& v, int first_outline);
   double depth(int patch, const Vec3& point) const;

@@ -49,12 +49,18 @@ Probe::Look Probe::look(int patch, std::uint64_t seed) const {
       hemisphere_rays(mesh_, patch, rays_, mixed_seed(seed, patch), outline_margin / occluders_.scale());
   std::vector<RayScene::Hit> hits(rays_);
   occluders_.intersect(rays.origins, rays.normals, rays.directions, hits);
+  std::vector<Vec3> points(rays_);
+  for (int k = 0; k < rays_; ++k) points[k] = rays.origins[k] + hits[k].distance * rays.directions[k];
+  const std::vector<int> patches = locator_.patches_at(hits, points);
+  for (const int met : patches) {
+    if (met < 0) continue;
+    __builtin_prefetch(&radiosity_(met, 0));
+    __builtin_prefetch(&part_[met]);
+  }
   int found = 0;
   for (int k = 0; k < rays_; ++k) {
     const RayScene::Hit& hit = hits[k];
-    if (hit.primitive < 0) continue;
-    const int met =
-        locator_.patch_at(hit.primitive, hit.front, rays.origins[k] + hit.distance * rays.directions[k]);
+    const int met = patches[k];
     if (met < 0) continue;
     ++found;
     ++look.met[part_[met]];
