@@ -202,6 +202,10 @@ Eigen::Array2i PatchLocator::Grid::first_cell(const Eigen::Array2d& at) const {
   return (at - 0.5).floor().cast<int>().max(0).min(Eigen::Array2i(nx, ny) - 1);
 }
 
+Eigen::Array2i PatchLocator::Grid::own_cell(const Eigen::Array2d& at) const {
+  return at.floor().cast<int>().max(0).min(Eigen::Array2i(nx, ny) - 1);
+}
+
 Eigen::Array2i PatchLocator::Grid::last_cell(const Eigen::Array2d& at) const {
   return (at + 0.5).floor().cast<int>().max(0).min(Eigen::Array2i(nx, ny) - 1);
 }
@@ -210,26 +214,30 @@ int PatchLocator::patch_at(int triangle, bool front, const Vec3& point) const {
   const Sheet& sheet = sheet_of(triangle, front);
   const auto near = [&](const Grid& grid, auto&& visit) {
     const Eigen::Array2d at = grid.at(point);
+    const auto visit_cell = [&](int i, int j) {
+      const int* cell = grid.cell(i, j);
+      const auto px = static_cast<float>(at[0] - i - 0.5), py = static_cast<float>(at[1] - j - 0.5);
+      for (int k = cell[0]; k < cell[1]; ++k) {
+        if (visit(outlines_[k], px, py)) return outlines_[k].patch;
+      }
+      return -1;
+    };
+    // regular patches stand in the cell that the point lies in
+    const Eigen::Array2i own = grid.own_cell(at);
+    if (const int patch = visit_cell(own[0], own[1]); patch >= 0) return patch;
     const Eigen::Array2i from = grid.first_cell(at), to = grid.last_cell(at);
     for (int j = from[1]; j <= to[1]; ++j) {
       for (int i = from[0]; i <= to[0]; ++i) {
-        const int* cell = grid.cell(i, j);
-        const auto px = static_cast<float>(at[0] - i - 0.5), py = static_cast<float>(at[1] - j - 0.5);
-        for (int k = cell[0]; k < cell[1]; ++k) {
-          if (visit(outlines_[k], px, py)) return outlines_[k].patch;
-        }
+        if (i == own[0] && j == own[1]) continue;
+        if (const int patch = visit_cell(i, j); patch >= 0) return patch;
       }
     }
     return -1;
   };
   const auto holds = [](const Outline& outline, float px, float py) {
-    bool inside = true;
-    for (int k = 0; k < 4; ++k) {
-      const int next = (k + 1) % 4;
-      const float ex = outline.x[next] - outline.x[k], ey = outline.y[next] - outline.y[k];
-      inside &= ex * (py - outline.y[k]) - ey * (px - outline.x[k]) >= 0;
-    }
-    return inside;
+    const Eigen::Map<const Eigen::Array4f> x(outline.x), y(outline.y);
+    const Eigen::Array4f next_x(x[1], x[2], x[3], x[0]), next_y(y[1], y[2], y[3], y[0]);
+    return ((next_x - x) * (py - y) - (next_y - y) * (px - x)).minCoeff() >= 0;
   };
   for (int g = 0; g < sheet.count; ++g) {
     const int found = near(grids_[sheet.first + g], holds);
@@ -259,25 +267,22 @@ std::vector<int> PatchLocator::patches_at(std::span<const RayScene::Hit> hits,
     throw std::invalid_argument("PatchLocator::patches_at: hits and points differ in number");
   }
   std::vector<int> patches(hits.size(), -1);
-  std::array<std::array<const int*, 2>, prefetched> rows;  // the cells to be searched begin there
+  std::array<const int*, prefetched> cells;  // those that the points lie in
   for (std::size_t begin = 0; begin < hits.size(); begin += prefetched) {
     const std::size_t count = std::min<std::size_t>(prefetched, hits.size() - begin);
     for (std::size_t k = 0; k < count; ++k) {
       const RayScene::Hit& hit = hits[begin + k];
-      rows[k] = {nullptr, nullptr};
+      cells[k] = nullptr;
       if (hit.primitive < 0) continue;
       const Sheet& sheet = sheet_of(hit.primitive, hit.front);
       if (sheet.count == 0) continue;
       const Grid& grid = grids_[sheet.first];
-      const Eigen::Array2d at = grid.at(points[begin + k]);
-      const Eigen::Array2i from = grid.first_cell(at), to = grid.last_cell(at);
-      rows[k] = {grid.cell(from[0], from[1]), grid.cell(from[0], to[1])};
-      for (const int* row : rows[k]) __builtin_prefetch(row);
+      const Eigen::Array2i own = grid.own_cell(grid.at(points[begin + k]));
+      cells[k] = grid.cell(own[0], own[1]);
+      __builtin_prefetch(cells[k]);
     }
     for (std::size_t k = 0; k < count; ++k) {
-      for (const int* row : rows[k]) {
-        if (row) __builtin_prefetch(&outlines_[std::min<std::size_t>(*row, outlines_.size() - 1)]);
-      }
+      if (cells[k]) __builtin_prefetch(&outlines_[std::min<std::size_t>(*cells[k], outlines_.size() - 1)]);
     }
     for (std::size_t k = 0; k < count; ++k) {
       const RayScene::Hit& hit = hits[begin + k];

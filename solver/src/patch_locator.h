@@ -42,6 +42,8 @@ class PatchLocator {
     std::vector<int> cells;
 
     Eigen::Array2d at(const Vec3& point) const { return {(point - origin).dot(u), (point - origin).dot(v)}; }
+    /// The cell that (i, j) lies in.
+    Eigen::Array2i own_cell(const Eigen::Array2d& at) const;
     /// The first and the last cell along each axis that may hold what lies at (i, j).
     Eigen::Array2i first_cell(const Eigen::Array2d& at) const;
     Eigen::Array2i last_cell(const Eigen::Array2d& at) const;

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "operator_error/patch_square.h"
-
 namespace luxel {
 
 namespace {
@@ -26,9 +24,10 @@ double reach_of(const PatchMesh& mesh, int patch, const Vec3& middle) {
 
 }  // namespace
 
-LampPoints::LampPoints(const PatchMesh& mesh, const PatchField& emission, std::span<const int> order)
+LampPoints::LampPoints(const PatchMesh& mesh, const PatchField& emission, std::span<const int> order,
+                       double most)
     : mesh_(mesh), emitter_of_(mesh.size(), -1) {
-  double power = 0, all = 0;
+  double power = 0, emitting = 0, all = 0;
   for (const int patch : order) {
     all += mesh.areas[patch];
     const double exitance = emission.row(patch).sum();
@@ -37,10 +36,18 @@ LampPoints::LampPoints(const PatchMesh& mesh, const PatchField& emission, std::s
     emitters_.push_back(patch);
     exitance_.push_back(exitance);
     up_to_.push_back(power += exitance * mesh.areas[patch]);
-    share_of_area_ += mesh.areas[patch];
+    emitting += mesh.areas[patch];
+  }
+  if (emitting > most * all) {
+    emitters_.clear();
+    emitter_of_.assign(mesh.size(), -1);
   }
   if (emitters_.empty()) return;
-  share_of_area_ /= all;
+  squares_.reserve(emitters_.size());
+  for (const int patch : emitters_) {
+    squares_.emplace_back(mesh, patch);
+    normals_.push_back(mesh.normals[patch]);
+  }
 
   // pieces of about equal power, of one normal each where the next would turn
   group_of_.resize(emitters_.size());
@@ -107,7 +114,8 @@ LampPoints::Point LampPoints::View::point(double s, double t) const {
   s = std::clamp((at - up_to_here) / (powers[k] - up_to_here), 0.0, 1.0);
   Point point;
   point.patch = lamps_.emitters_[k];
-  point.at = PatchSquare(lamps_.mesh_, point.patch)(s, t);
+  point.at = lamps_.squares_[k](s, t);
+  point.normal = lamps_.normals_[k];
   point.density = density(point.patch);
   return point;
 }

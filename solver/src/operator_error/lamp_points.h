@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "luxel/patch_mesh.h"
+#include "operator_error/patch_square.h"
 
 namespace luxel {
 
@@ -12,14 +13,14 @@ namespace luxel {
 class LampPoints {
  public:
   /// @param order  the patches, neighbours together: close numbers lead to close points
-  LampPoints(const PatchMesh& mesh, const PatchField& emission, std::span<const int> order);
+  /// @param most   share of the area; where more emits there are no points
+  LampPoints(const PatchMesh& mesh, const PatchField& emission, std::span<const int> order, double most);
 
   bool empty() const { return emitters_.empty(); }
-  /// Share of the surface that emits.
-  double share_of_area() const { return share_of_area_; }
 
   struct Point {
     Vec3 at;             ///< [m]
+    Vec3 normal;         ///< there
     int patch = -1;      ///< that it lies on
     double density = 0;  ///< of such points there [1/m2]
   };
@@ -52,12 +53,13 @@ class LampPoints {
 
   const PatchMesh& mesh_;
   std::vector<int> emitters_;  // patches
+  std::vector<PatchSquare> squares_;
+  std::vector<Vec3> normals_;
   std::vector<double> up_to_;  // power of emitters 0 .. k
   std::vector<Group> groups_;
   std::vector<int> group_of_;     // of each patch, -1: does not emit
   std::vector<double> exitance_;  // of each emitter, all channels together [W/m2]
   std::vector<int> emitter_of_;   // of each patch; -1
-  double share_of_area_ = 0;
 };
 
 }  // namespace luxel

@@ -32,10 +32,8 @@ Probe::Probe(const PatchMesh& mesh, const RayScene& occluders, const PatchField&
       part_(part),
       parts_(parts),
       rays_(rays_a_look),
-      lamps_(mesh, emission, order),
-      locator_(mesh) {
-  lamps_apart_ = !lamps_.empty() && lamps_.share_of_area() <= largest_share_apart;
-}
+      lamps_(mesh, emission, order, largest_share_apart),
+      locator_(mesh) {}
 
 // A ray brings U = B - E from where it ends, and E there with the weight of the balance heuristic: the
 // density of rays of one kind, in solid angle, over that of both.
@@ -44,7 +42,7 @@ Probe::Look Probe::look(int patch, std::uint64_t seed) const {
   look.irradiance = Eigen::RowVectorXd::Zero(radiosity_.cols());
   look.met.assign(parts_, 0);
   const LampPoints::View lamps(lamps_, patch);
-  const bool apart = lamps_apart_ && !lamps.empty();
+  const bool apart = !lamps.empty();
   const HemisphereRays rays =
       hemisphere_rays(mesh_, patch, rays_, mixed_seed(seed, patch), outline_margin / occluders_.scale());
   std::vector<RayScene::Hit> hits(rays_);
@@ -96,8 +94,7 @@ void Probe::add_lamps(int patch, const LampPoints::View& lamps, std::uint64_t se
     const LampPoints::Point lamp = lamps.point(u, v);
     const Vec3 way = lamp.at - origin;
     const double distance = way.norm();
-    const double cosine = normal.dot(way) / distance,
-                 lamp_cosine = -mesh_.normals[lamp.patch].dot(way) / distance;
+    const double cosine = normal.dot(way) / distance, lamp_cosine = -lamp.normal.dot(way) / distance;
     if (!(cosine > 0 && lamp_cosine > 0)) continue;
     origins.push_back(origin);
     directions.push_back(way / distance);

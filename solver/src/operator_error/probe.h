@@ -44,7 +44,6 @@ class Probe {
   std::span<const std::int32_t> part_;
   int parts_;
   int rays_;
-  bool lamps_apart_;
   LampPoints lamps_;
   PatchLocator locator_;
 };
