@@ -9,6 +9,7 @@
 #include "operator_error/strata.h"
 #include "plan/cost_model.h"
 #include "plan/decisions.h"
+#include "plan/error_bar.h"
 #include "plan/gathered_enclosures.h"
 #include "plan/solved_channels.h"
 #include "transport/gather/gathered_light.h"
@@ -19,10 +20,6 @@ namespace {
 
 // Where nothing emits, rays are cast only to tell the enclosures.
 constexpr int least_rays = 16;
-
-// Rays that the error bar may take, as a share of those of the gather: below a fifth of the run with what
-// strata and exchange cost.
-constexpr double error_bar_share = 0.12;
 
 // Parts of the scene between which reciprocity is looked at.
 constexpr int reciprocity_parts = 64;
@@ -131,13 +128,14 @@ GatheredRun run_gathered(const PatchMesh& mesh, const PlanOptions& options, cons
 
   if (options.error_bar && !run.gather.partial) {
     enter(PlanStage::measuring);
-    OperatorErrorOptions probing;
-    probing.accuracy = options.form_factors.accuracy;
-    probing.seed = options.form_factors.seed;
-    probing.most_rays = error_bar_share * static_cast<double>(planned.rays);
+    const double triangles = static_cast<double>(mesh.occluders.triangles.size());
+    const double seconds =
+        gather_seconds(mesh.size(), static_cast<double>(planned.rays) / mesh.size(), triangles);
+    const OperatorErrorOptions probing = error_bar_options(mesh, options, seconds);
     try {
-      planned.operator_error = operator_error(mesh, occluders, rho_solved, emitted_solved, light.solution.light,
-                                              planned.row_sums, probing, listener.progress);
+      planned.operator_error =
+          operator_error(mesh, occluders, rho_solved, emitted_solved, light.solution.light, planned.row_sums,
+                         probing, listener.progress);
     } catch (const Cancelled&) {
       if (!options.keep_partial) throw;
     }
