@@ -46,7 +46,7 @@ CoarseExchange coarse_exchange(const GatherOperator& transport, const std::vecto
 }
 
 CoarseExchange coarse_exchange(const std::vector<StratumDefects>& defects,
-                               const std::vector<std::int32_t>& part, int parts, int looks) {
+                               const std::vector<std::int32_t>& part, int parts) {
   CoarseExchange coarse;
   coarse.areas.assign(parts, 0.0);
   Eigen::MatrixXd exchange = Eigen::MatrixXd::Zero(parts, parts);
@@ -54,7 +54,7 @@ CoarseExchange coarse_exchange(const std::vector<StratumDefects>& defects,
     for (const Defect& defect : of_stratum) {
       const std::int32_t own = part[defect.patch];
       coarse.areas[own] += defect.weight;
-      for (int p = 0; p < parts; ++p) exchange(own, p) += defect.weight * defect.met[p] / looks;
+      for (int p = 0; p < parts; ++p) exchange(own, p) += defect.weight * defect.met[p] / defect.looked;
     }
   }
   set_exchange(std::move(exchange), coarse);

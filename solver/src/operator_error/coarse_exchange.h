@@ -22,8 +22,7 @@ CoarseExchange coarse_exchange(const GatherOperator& transport, const std::vecto
                                int parts);
 
 /// From what the rays of probes met.
-/// @param looks  rays of each probe
 CoarseExchange coarse_exchange(const std::vector<StratumDefects>& defects,
-                               const std::vector<std::int32_t>& part, int parts, int looks);
+                               const std::vector<std::int32_t>& part, int parts);
 
 }  // namespace luxel

@@ -15,7 +15,8 @@ struct Defect {
   std::array<Eigen::RowVectorXd, 2> halves;  ///< H - F B by two looks [W/m2]
   std::vector<int> met;                      ///< rays of both that met each part
   double row_sum = 0;
-  std::int64_t rays = 0;
+  int looked = 0;         ///< rays of both over the hemisphere
+  std::int64_t rays = 0;  ///< all that were cast
 
   Eigen::RowVectorXd mean() const { return (halves[0] + halves[1]) / 2; }
 };

@@ -45,6 +45,18 @@ double MeanSquare::operator()(int left_out) const {
   return sum / whole;
 }
 
+double MeanSquare::noise_of_look() const {
+  double sum = 0, whole = 0;
+  for (const StratumDefects& of_stratum : defects_) {
+    for (const Defect& defect : of_stratum) {
+      const double difference = defect.halves[0][channel_] - defect.halves[1][channel_];
+      sum += defect.weight * difference * difference / 2;
+      whole += defect.weight;
+    }
+  }
+  return sum / whole;
+}
+
 // The halves differ by twice the noise variance of one, whose product with the other's varies by its square:
 // a fourth power of normal differences is three times the square of their variance.
 double MeanSquare::noise() const {

@@ -25,6 +25,9 @@ class MeanSquare {
   /// @param left_out  one of the groups, or -1
   double operator()(int left_out) const;
 
+  /// The mean square noise of one look.
+  double noise_of_look() const;
+
   /// The standard error of all strata together from the noise of the looks alone, as if there were no error.
   double noise() const;
 

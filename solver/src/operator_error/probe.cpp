@@ -24,31 +24,30 @@ constexpr double outline_margin = 1e-6, lamp_margin = 2e-6;
 
 Probe::Probe(const PatchMesh& mesh, const RayScene& occluders, const PatchField& emission,
              const PatchField& radiosity, std::span<const int> order, std::span<const std::int32_t> part,
-             int parts, int rays_a_look)
+             int parts)
     : mesh_(mesh),
       occluders_(occluders),
       emission_(emission),
       radiosity_(radiosity),
       part_(part),
       parts_(parts),
-      rays_(rays_a_look),
       lamps_(mesh, emission, order, largest_share_apart),
       locator_(mesh) {}
 
 // A ray brings U = B - E from where it ends, and E there with the weight of the balance heuristic: the
 // density of rays of one kind, in solid angle, over that of both.
-Probe::Look Probe::look(int patch, std::uint64_t seed) const {
+Probe::Look Probe::look(int patch, int count, std::uint64_t seed) const {
   Look look;
   look.irradiance = Eigen::RowVectorXd::Zero(radiosity_.cols());
   look.met.assign(parts_, 0);
   const LampPoints::View lamps(lamps_, patch);
   const bool apart = !lamps.empty();
   const HemisphereRays rays =
-      hemisphere_rays(mesh_, patch, rays_, mixed_seed(seed, patch), outline_margin / occluders_.scale());
-  std::vector<RayScene::Hit> hits(rays_);
+      hemisphere_rays(mesh_, patch, count, mixed_seed(seed, patch), outline_margin / occluders_.scale());
+  std::vector<RayScene::Hit> hits(count);
   occluders_.intersect(rays.origins, rays.normals, rays.directions, hits);
-  std::vector<Vec3> points(rays_);
-  for (int k = 0; k < rays_; ++k) points[k] = rays.origins[k] + hits[k].distance * rays.directions[k];
+  std::vector<Vec3> points(count);
+  for (int k = 0; k < count; ++k) points[k] = rays.origins[k] + hits[k].distance * rays.directions[k];
   const std::vector<int> patches = locator_.patches_at(hits, points);
   for (const int met : patches) {
     if (met < 0) continue;
@@ -56,7 +55,7 @@ Probe::Look Probe::look(int patch, std::uint64_t seed) const {
     __builtin_prefetch(&part_[met]);
   }
   int found = 0;
-  for (int k = 0; k < rays_; ++k) {
+  for (int k = 0; k < count; ++k) {
     const RayScene::Hit& hit = hits[k];
     const int met = patches[k];
     if (met < 0) continue;
@@ -71,14 +70,15 @@ Probe::Look Probe::look(int patch, std::uint64_t seed) const {
     const double other = density * hit.distance * hit.distance;
     look.irradiance -= other / (own + other) * emission_.row(met);
   }
-  look.irradiance /= rays_;
-  look.row_sum = static_cast<double>(found) / rays_;
-  look.rays = rays_;
-  if (apart) add_lamps(patch, lamps, seed, look);
+  look.irradiance /= count;
+  look.row_sum = static_cast<double>(found) / count;
+  look.rays = count;
+  if (apart) add_lamps(patch, lamps, count, seed, look);
   return look;
 }
 
-void Probe::add_lamps(int patch, const LampPoints::View& lamps, std::uint64_t seed, Look& look) const {
+void Probe::add_lamps(int patch, const LampPoints::View& lamps, int count, std::uint64_t seed,
+                      Look& look) const {
   const Vec3& normal = mesh_.normals[patch];
   const PatchSquare square(mesh_, patch);
   const double margin = outline_margin / occluders_.scale();
@@ -87,7 +87,7 @@ void Probe::add_lamps(int patch, const LampPoints::View& lamps, std::uint64_t se
   std::vector<Vec3> origins, directions;
   std::vector<double> distances, weights;
   std::vector<int> patches;
-  for (int k = 0; k < rays_; ++k) {
+  for (int k = 0; k < count; ++k) {
     const auto [s, t, u, v] = points(k);
     Vec3 origin = square(s, t);
     origin += shrink * (mesh_.centroids[patch] - origin);
@@ -113,7 +113,7 @@ void Probe::add_lamps(int patch, const LampPoints::View& lamps, std::uint64_t se
         hits[k].primitive >= 0 && hits[k].distance < distances[k] - lamp_margin / occluders_.scale();
     if (!hidden) direct += weights[k] * emission_.row(patches[k]);
   }
-  look.irradiance += direct / rays_;
+  look.irradiance += direct / count;
   look.rays += static_cast<std::int64_t>(origins.size());
 }
 

@@ -17,12 +17,11 @@ namespace luxel {
 /// Source: Veach and Guibas 1995, Optimally combining sampling techniques for Monte Carlo rendering.
 class Probe {
  public:
-  /// @param order        the patches, neighbours together
-  /// @param part         N: of each patch, 0 .. parts - 1
-  /// @param rays_a_look  over the hemisphere; to lamps as many, where lamps are small
+  /// @param order  the patches, neighbours together
+  /// @param part   N: of each patch, 0 .. parts - 1
   Probe(const PatchMesh& mesh, const RayScene& occluders, const PatchField& emission,
         const PatchField& radiosity, std::span<const int> order, std::span<const std::int32_t> part,
-        int parts, int rays_a_look);
+        int parts);
 
   struct Look {
     Eigen::RowVectorXd irradiance;  ///< m [W/m2]
@@ -32,10 +31,11 @@ class Probe {
   };
 
   /// Looks of different seeds are independent.
-  Look look(int patch, std::uint64_t seed) const;
+  /// @param rays  over the hemisphere; to lamps as many, where lamps are small
+  Look look(int patch, int rays, std::uint64_t seed) const;
 
  private:
-  void add_lamps(int patch, const LampPoints::View& lamps, std::uint64_t seed, Look& look) const;
+  void add_lamps(int patch, const LampPoints::View& lamps, int rays, std::uint64_t seed, Look& look) const;
 
   const PatchMesh& mesh_;
   const RayScene& occluders_;
@@ -43,7 +43,6 @@ class Probe {
   const PatchField& radiosity_;
   std::span<const std::int32_t> part_;
   int parts_;
-  int rays_;
   LampPoints lamps_;
   PatchLocator locator_;
 };

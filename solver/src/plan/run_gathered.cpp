@@ -32,8 +32,8 @@ std::vector<char> lossless_channels(const PatchField& rho) {
 }
 
 double reciprocity_error(const GatherOperator& stored) {
-  const Strata strata(stored.packets(), {stored.areas().begin(), stored.areas().end()}, reciprocity_parts);
-  return coarse_exchange(stored, strata.of_patch(), reciprocity_parts).reciprocity_error;
+  const Strata strata(stored.packets(), {stored.areas().begin(), stored.areas().end()});
+  return coarse_exchange(stored, strata.of_patch(reciprocity_parts), reciprocity_parts).reciprocity_error;
 }
 
 Energy energy_of(const PatchMesh& mesh, const PatchField& rho, const PatchField& emitted,
