@@ -1,9 +1,11 @@
 #include "luxel/mesh_scene.h"
 
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 
 #include "as_is.h"
+#include "edge_table.h"
 #include "facets.h"
 #include "luxel/input_error.h"
 #include "mesh_quality.h"
@@ -63,17 +65,25 @@ PatchMesh mesh_scene(const Scene& scene, const MeshingOptions& options, const Pr
   const bool as_is = keeps_faces(options, face_patches, mesh.warnings);
   if (as_is) refuse_too_many(scene, static_cast<double>(face_patches), options.max_patches);
 
-  const RepairedFacets repaired = repair_t_junctions(facets);
-  FacetOccluders blocking = make_occluders(repaired.facets);
+  std::optional<EdgeTable> edges;
+  edges.emplace(facets.loops, static_cast<int>(facets.vertices.size()));
+  const std::optional<RepairedFacets> repaired = repair_t_junctions(facets, *edges);
+  const Facets& conforming = repaired ? repaired->facets : facets;
+  if (repaired) edges.emplace(conforming.loops, static_cast<int>(conforming.vertices.size()));
+  FacetOccluders blocking = make_occluders(conforming, *edges);
   mesh.occluders = std::move(blocking.occluders);
   if (as_is) {
+    edges.reset();  // what is made now takes its memory
     append_facets(mesh, scene, facets, blocking.polygon_of_facet);
   } else {
-    append_sized(mesh, scene, repaired.facets, blocking.polygon_of_facet, options, progress);
-    mesh.report.repaired_t_junctions = repaired.repaired;
+    append_sized(mesh, scene, conforming, *edges, blocking.polygon_of_facet, options, progress);
+    if (repaired) mesh.report.repaired_t_junctions = repaired->repaired;
   }
+  measure_patches(mesh);
   measure_quality(mesh, facets);
-  mesh.report.remaining_t_vertices = count_t_vertices(mesh);
+  // Patches that are the facets, none of which has a vertex on an edge, have none either.
+  const bool found_before = as_is && !repaired && facets.split_faces == 0;
+  mesh.report.remaining_t_vertices = found_before ? 0 : count_t_vertices(mesh);
   tell(progress, 1);
   return mesh;
 }

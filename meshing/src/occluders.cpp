@@ -26,8 +26,8 @@ RepeatedLoops find_coincident(const FlatPolygons& polygons) {
 
 }  // namespace
 
-FacetOccluders make_occluders(const Facets& facets) {
-  const MergedPolygons merged = merge_facets(facets, [](int, int) { return true; });
+FacetOccluders make_occluders(const Facets& facets, const EdgeTable& edges) {
+  const MergedPolygons merged = merge_facets(facets, edges, [](int, int) { return true; });
   const Regions& regions = merged.regions;
   const RepeatedLoops repeated = find_coincident(merged.polygons);
 
