@@ -69,15 +69,18 @@ constexpr double patch_bytes = 2500;
 constexpr double gather_ray = 30e-9, ray_doubling = 2e-9;
 constexpr double few_triangles = 64, cached_triangles = 1e5, beyond_cache = 0.5;
 
-// A ray of the error bar has no neighbours to travel with.
-constexpr double probe_ray = 2;
+// A ray of the error bar goes alone, in double precision, and ends in memory of its own; so many times a ray
+// of a gather, and what a patch costs it besides: places and strata.
+constexpr double probe_ray = 7, probe_patch = 1.2e-7;
+constexpr double cached_patches = 3e4, probe_beyond_cache = 0.1;
 
 // A patch besides its rays: packets, pictures, direct light, iteration.
 constexpr double gather_patch = 4e-6;
 
 // Clusters and passes over them [s a patch], and pairs of clusters [s, bytes; times root of patches times
-// accuracy^-order].
+// accuracy^-order]; or, once their number is known, all by what they hold [s a byte] and ask [s a ray].
 constexpr double cluster_patch = 1.3e-5, cluster_pairs = 2.8e-5, cluster_order = 1.07;
+constexpr double block_byte = 1.5e-8, block_ray = 5e-8;
 constexpr double cluster_patch_bytes = 430, cluster_pair_bytes = 1900;
 
 // Mesh, fields and pictures of a gather [a patch], and its ray scene [a triangle].
@@ -176,8 +179,13 @@ double gather_ray_seconds(double triangles) {
          std::pow(std::max(1.0, triangles / cached_triangles), beyond_cache);
 }
 
-double probe_seconds(double triangles) {
-  return probe_ray * gather_ray_seconds(triangles);
+double probe_ray_seconds(double patches, double triangles) {
+  return probe_ray * gather_ray_seconds(triangles) *
+         std::pow(std::max(1.0, patches / cached_patches), probe_beyond_cache);
+}
+
+double probes_seconds(double patches) {
+  return probe_patch * patches;
 }
 
 double gather_seconds(double patches, double rays_a_patch, double triangles) {
@@ -186,6 +194,10 @@ double gather_seconds(double patches, double rays_a_patch, double triangles) {
 
 double hierarchical_seconds(double patches, double accuracy) {
   return patches * cluster_patch + cluster_pairs * std::sqrt(patches) * std::pow(accuracy, -cluster_order);
+}
+
+double block_seconds(double bytes, double rays) {
+  return block_byte * bytes + block_ray * rays;
 }
 
 double hierarchical_bytes(double patches, double accuracy) {

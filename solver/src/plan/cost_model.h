@@ -61,15 +61,20 @@ double visibility_seconds(double clipped_pairs, double sampled_pairs, double ray
 /// Row sums, and scaling them in a closed enclosure.
 double closure_seconds(double patches, Precision precision, bool closed);
 
-/// A ray of a gather, with what is done with it, against so many triangles; and one of the error bar's.
+/// A ray of a gather, with what is done with it, against so many triangles.
 double gather_ray_seconds(double triangles);
-double probe_seconds(double triangles);
+
+/// The error bar: a ray of its probes, and what it does before the first.
+double probe_ray_seconds(double patches, double triangles);
+double probes_seconds(double patches);
 
 /// Everything that a gather does.
 double gather_seconds(double patches, double rays_a_patch, double triangles);
 
 /// Everything that a hierarchical operator does, in a scene of few polygons.
 double hierarchical_seconds(double patches, double accuracy);
+/// Assembling and solving a hierarchical operator of so many bytes that took so many rays.
+double block_seconds(double bytes, double rays);
 
 // Memory [bytes].
 double hierarchical_bytes(double patches, double accuracy);

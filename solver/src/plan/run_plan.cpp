@@ -7,6 +7,7 @@
 
 #include "luxel/plan.h"
 #include "plan/cost_model.h"
+#include "plan/error_bar.h"
 #include "plan/merged_report.h"
 #include "plan/solved_channels.h"
 
@@ -34,9 +35,6 @@ Enclosures part_of(const Enclosures& all, const std::vector<int>& patches) {
   }
   return part;
 }
-
-// Of the time that assembling takes: what the error bar may take.
-constexpr double error_bar_share = 0.1;
 
 class Run {
  public:
@@ -128,7 +126,7 @@ class Run {
   }
 
  private:
-  /// The operator's error, for at most a tenth of what assembling it took.
+  /// The operator's error.
   void measure() {
     if ((emission_.array() == 0).all()) return;
     enter(PlanStage::measuring);
@@ -137,11 +135,7 @@ class Run {
         assembly_seconds(static_cast<double>(done.facing_pairs), options_.form_factors.accuracy) +
         visibility_seconds(static_cast<double>(done.exact_pairs), static_cast<double>(done.sampled_pairs),
                            static_cast<double>(done.rays));
-    OperatorErrorOptions probing;
-    probing.accuracy = options_.form_factors.accuracy;
-    probing.seed = options_.form_factors.seed;
-    probing.most_rays =
-        error_bar_share * seconds / probe_seconds(static_cast<double>(mesh_.occluders.triangles.size()));
+    const OperatorErrorOptions probing = error_bar_options(mesh_, options_, seconds);
     result_.operator_error = operator_error(mesh_, RayScene(mesh_.occluders), reflectance_, emission_,
                                             result_.solution, result_.row_sums, probing, listener_.progress);
   }
