@@ -11,6 +11,10 @@ namespace {
 // which a sample often holds too little (docs/scale.md counts what holds).
 constexpr double quantile = 2.74;
 
+// The same for noise below the low end, which must not make an error where there is none: a product of two
+// noises has longer tails than a normal deviate.
+constexpr double noise_quantile = 4;
+
 // With a larger relative deviation the square is that of a patch or two, which may be the only ones.
 constexpr double few_squares = 0.7;
 
@@ -35,7 +39,7 @@ Interval error_interval(double square, const std::vector<double>& without, doubl
   double low = 0;
   if (deviation < few_squares * square) {
     const double drawn = std::sqrt(std::max(0.0, deviation * deviation - noise * noise));
-    low = (square - quantile * noise) * std::exp(-quantile * drawn / square);
+    low = (square - noise_quantile * noise) * std::exp(-quantile * drawn / square);
   }
   interval.low = std::sqrt(std::max(0.0, low - own_error * own_error));
   return interval;

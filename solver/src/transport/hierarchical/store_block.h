@@ -17,7 +17,8 @@ struct BlockTolerance {
 void store_block(const BlockEnd& r, const BlockEnd& s, const BlockKernel& kernel, const RayCount& rays,
                  const BlockTolerance& tolerance, BlockList& list);
 
-/// The same for single patches too near, or too steep, for the kernel between nodes: it is integrated exactly.
+/// The same for single patches too near, or too steep, for the kernel between nodes: it is integrated
+/// exactly.
 /// @param visible  share of it that nothing hides
 void store_near_block(const BlockEnd& r, const BlockEnd& s, double visible, const BlockTolerance& tolerance,
                       BlockList& list);
