@@ -26,7 +26,7 @@ double smallest_angle(std::span<const Vec3> loop) {
 
 }  // namespace
 
-void measure_quality(PatchMesh& mesh, const Facets& facets) {
+void measure_quality(PatchMesh& mesh, const Facets& facets, double cut_area) {
   std::vector<double> angles;
   angles.reserve(mesh.size());
   double area = 0;
@@ -61,6 +61,7 @@ void measure_quality(PatchMesh& mesh, const Facets& facets) {
     scene_area += area_vector(points).norm() * (facets.front[i] + facets.back[i]);
     report.sharpest_input_angle = std::min(report.sharpest_input_angle, smallest_angle(points));
   }
+  scene_area -= cut_area;
   report.area_error = std::abs(area - scene_area) / scene_area;
   report.welded_vertices = facets.welded_vertices;
   report.degenerate_faces = facets.degenerate_faces;

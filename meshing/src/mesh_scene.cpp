@@ -1,9 +1,13 @@
 #include "luxel/mesh_scene.h"
 
+#include <array>
 #include <cmath>
+#include <cstdio>
+#include <optional>
 #include <stdexcept>
 
 #include "as_is.h"
+#include "cut_overlaps.h"
 #include "facets.h"
 #include "luxel/input_error.h"
 #include "mesh_quality.h"
@@ -50,6 +54,17 @@ bool keeps_faces(const MeshingOptions& options, std::size_t face_patches,
   return true;
 }
 
+std::string overlap_warning(const CutFacets& cut, bool kept) {
+  std::array<char, 32> area;
+  std::snprintf(area.data(), area.size(), "%.3g", cut.area);
+  return std::to_string(cut.faces) + (cut.faces == 1 ? " face lies" : " faces lie") +
+         " in part or all in the same plane and on the same side as an earlier one, by " + area.data() +
+         " m2 (first: face " + std::to_string(cut.first_face) + " and face " +
+         std::to_string(cut.first_above) + "); " +
+         (kept ? "as-is keeps them, and light counts twice there"
+               : "what the earlier one covers is cut away");
+}
+
 }  // namespace
 
 PatchMesh mesh_scene(const Scene& scene, const MeshingOptions& options, const Progress& progress) {
@@ -63,16 +78,27 @@ PatchMesh mesh_scene(const Scene& scene, const MeshingOptions& options, const Pr
   const bool as_is = keeps_faces(options, face_patches, mesh.warnings);
   if (as_is) refuse_too_many(scene, static_cast<double>(face_patches), options.max_patches);
 
-  const RepairedFacets repaired = repair_t_junctions(facets);
+  RepairedFacets repaired = repair_t_junctions(facets);
   FacetOccluders blocking = make_occluders(repaired.facets);
+  std::optional<CutFacets> cut = cut_overlaps(facets, blocking.regions, blocking.overlaps);
+  if (cut) {
+    mesh.report.overlapping_faces = cut->faces;
+    mesh.report.overlap_area = cut->area;
+    mesh.warnings.push_back(overlap_warning(*cut, options.as_is));
+    if (options.as_is) cut.reset();
+  }
+  if (cut) {
+    repaired = repair_t_junctions(cut->facets);
+    blocking = make_occluders(repaired.facets);
+  }
   mesh.occluders = std::move(blocking.occluders);
   if (as_is) {
-    append_facets(mesh, scene, facets, blocking.polygon_of_facet);
+    append_facets(mesh, scene, cut ? cut->facets : facets, blocking.polygon_of_facet);
   } else {
     append_sized(mesh, scene, repaired.facets, blocking.polygon_of_facet, options, progress);
     mesh.report.repaired_t_junctions = repaired.repaired;
   }
-  measure_quality(mesh, facets);
+  measure_quality(mesh, facets, cut ? cut->area : 0);
   mesh.report.remaining_t_vertices = count_t_vertices(mesh);
   tell(progress, 1);
   return mesh;

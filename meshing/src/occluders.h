@@ -4,6 +4,8 @@
 
 #include "facets.h"
 #include "luxel/patch_mesh.h"
+#include "overlapping_polygons.h"
+#include "regions.h"
 
 namespace luxel {
 
@@ -11,6 +13,8 @@ namespace luxel {
 struct FacetOccluders {
   Occluders occluders;
   std::vector<int> polygon_of_facet;
+  Regions regions;                        ///< coplanar facets, coincident ones each for themselves
+  std::vector<OverlappingPair> overlaps;  ///< regions that lie over each other
 };
 
 /// Coplanar facets merged into polygons, whatever their materials, and cut into triangles. The merged surface

@@ -2,21 +2,24 @@
 
 #include <vector>
 
+#include "coplanar_sheets.h"
 #include "luxel/patch_mesh.h"
 
 namespace luxel {
 
 /// Which patch lies at a point of a polygon of the occluders, on the side asked for: the way from what a ray
 /// met back to the patches. Each side of each polygon has a grid over its patches; sheets that coincide are
-/// told apart by the side. Cost: about 20 ns a look-up; memory about 50 bytes a patch and 40 a polygon.
+/// told apart by the side; where polygons overlap in part, either may be met and stands for both. Cost: about
+/// 20 ns a look-up; memory about 50 bytes a patch and 40 a polygon.
 class PatchLocator {
  public:
   /// The mesh must outlive the locator.
   explicit PatchLocator(const PatchMesh& mesh);
 
   /// The patch whose front is the `front` (or back) side of triangle `triangle` of mesh.occluders at `point`
-  /// [m], or -1: that side is the back of whatever stands there. Points off every outline by less than 1e-6
-  /// of the scene's diagonal belong to the nearest patch.
+  /// [m], or that of a polygon which overlaps it there, on the same side; or -1: that side is the back of
+  /// whatever stands there. Points off every outline by less than 1e-6 of the scene's diagonal belong to the
+  /// nearest patch.
   int patch_at(int triangle, bool front, const Vec3& point) const;
 
  private:
@@ -32,6 +35,7 @@ class PatchLocator {
     Vec3 origin, u, v;  // u and v per cell of size 1: ((x - origin) . u, (x - origin) . v) is (i, j)
   };
 
+  int patch_on(const Sheet& sheet, const Vec3& point) const;
   void add_grid(Sheet& sheet, const std::vector<int>& patches);
   bool contains(int patch, const Vec3& point) const;
   double depth(int patch, const Vec3& point) const;
@@ -40,6 +44,7 @@ class PatchLocator {
   const PatchMesh& mesh_;
   double tolerance_ = 0;       // [m]
   std::vector<Sheet> sheets_;  // 2 polygon + (front ? 0 : 1)
+  CoplanarSheets coplanar_;
   std::vector<Frame> frames_;
   std::vector<int> cells_;
   std::vector<int> candidates_;  // patch, or ~patch where the patch covers the whole cell

@@ -1,0 +1,233 @@
+#include "overlapping_polygons.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numeric>
+#include <utility>
+
+#include "box_tree.h"
+#include "convex_clip.h"
+#include "plane_groups.h"
+#include "t_junctions.h"
+#include "weld.h"
+
+namespace luxel {
+
+namespace {
+
+// Groups up to this size are swept along one axis; larger ones, which may fill a plane both ways, get a tree.
+constexpr int largest_sweep = 1024;
+
+// Pairs of triangles up to which they are tried one by one.
+constexpr std::size_t most_trials = 64;
+
+// How far apart two sheets of one plane may be, in distances within which a vertex lies on an edge: each may
+// be off its own plane by one.
+constexpr double apart = 2;
+
+// The same as a share of the smaller polygon: bodies much smaller than the scene keep their shape.
+constexpr double share_of_size = 1e-3;
+
+using Pair = std::pair<int, int>;
+
+/// Whether boxes have more in common than a point or a line.
+bool share_area(const Box& a, const Box& b, double distance) {
+  const Vec3 common = a.max().cwiseMin(b.max()) - a.min().cwiseMax(b.min());
+  return (common.array() > distance).count() >= 2 && (common.array() >= -apart * distance).all();
+}
+
+/// Tells which polygons have a part of one plane in common.
+class OverlapTest {
+ public:
+  OverlapTest(const std::vector<Vec3>& vertices, const MergedPolygons& merged)
+      : vertices_(vertices), merged_(merged), distance_(touching_distance(vertices)) {}
+
+  double distance() const { return distance_; }
+
+  Box box(int polygon) const {
+    Box box;
+    for (const auto& segment : merged_.polygons.border(polygon)) box.extend(vertices_[segment[0]]);
+    return box;
+  }
+
+  bool overlap(int p, int q) {
+    const auto& triangles = merged_.triangles;
+    const bool swapped = triangles[p].size() < triangles[q].size();
+    const int many = swapped ? q : p, few = swapped ? p : q;
+    if (!in_one_plane(p, q)) return false;
+    if (triangles[many].size() * triangles[few].size() <= most_trials) {
+      for (const auto& s : triangles[few]) {
+        for (const auto& t : triangles[many]) {
+          if (overlap(s, t, merged_.polygons.frames[few])) return true;
+        }
+      }
+      return false;
+    }
+    const BoxTree& tree = tree_of(many);
+    bool found = false;
+    for (const auto& s : triangles[few]) {
+      tree.query(box_of(s), [&](int t) {
+        found = found || overlap(s, triangles[many][t], merged_.polygons.frames[few]);
+      });
+      if (found) return true;
+    }
+    return false;
+  }
+
+  /// Whether facets' triangles of one irregular polygon lie over each other.
+  bool overlaps_itself(int p) {
+    const auto& triangles = merged_.triangles[p];
+    const BoxTree& tree = tree_of(p);
+    bool found = false;
+    for (std::size_t s = 0; s < triangles.size() && !found; ++s) {
+      tree.query(box_of(triangles[s]), [&](int t) {
+        if (found || t <= static_cast<int>(s)) return;
+        found = overlap(triangles[s], triangles[t], merged_.polygons.frames[p]);
+      });
+    }
+    return found;
+  }
+
+ private:
+  using Triangle = std::array<int, 3>;
+
+  Box box_of(const Triangle& t) const {
+    Box box(vertices_[t[0]]);
+    box.extend(vertices_[t[1]]);
+    box.extend(vertices_[t[2]]);
+    return box;
+  }
+
+  const BoxTree& tree_of(int p) {
+    if (!tree_ || polygon_of_tree_ != p) {
+      std::vector<Box> boxes;
+      boxes.reserve(merged_.triangles[p].size());
+      for (const auto& t : merged_.triangles[p]) {
+        Box box = box_of(t);
+        box.min().array() -= apart * distance_;
+        box.max().array() += apart * distance_;
+        boxes.push_back(box);
+      }
+      tree_ = std::make_unique<BoxTree>(std::move(boxes));
+      polygon_of_tree_ = p;
+    }
+    return *tree_;
+  }
+
+  /// Whether one of the two, whose directions are much alike, lies in the plane of the other.
+  bool in_one_plane(int p, int q) const {
+    const auto lies_in = [&](int small, int large) {
+      double size = 0;
+      const auto border = merged_.polygons.border(small);
+      for (const auto& [a, b] : border) size = std::max(size, (vertices_[b] - vertices_[a]).norm());
+      const double limit = std::max(rounding_of(border), std::min(apart * distance_, share_of_size * size));
+      return std::ranges::all_of(border, [&](const auto& segment) {
+        return std::abs(merged_.polygons.frames[large].height(vertices_[segment[0]])) <= limit;
+      });
+    };
+    return lies_in(p, q) || lies_in(q, p);
+  }
+
+  double rounding_of(std::span<const std::array<int, 2>> border) const {
+    const std::array<Vec3, 1> corner = {vertices_[border[0][0]]};
+    return rounding(corner);
+  }
+
+  bool overlap(const Triangle& s, const Triangle& t, const Frame& frame) const {
+    if (!share_area(box_of(s), box_of(t), distance_)) return false;
+    piece_.clear();
+    for (const int v : s) piece_.push_back({frame.flat(vertices_[v]), vertices_[v], v});
+    std::array<Vec2, 3> cutter;
+    for (int k = 0; k < 3; ++k) cutter[k] = frame.flat(vertices_[t[k]]);
+    const Vec2 a = cutter[1] - cutter[0], b = cutter[2] - cutter[0];
+    if (a.x() * b.y() < a.y() * b.x()) std::swap(cutter[1], cutter[2]);
+    return !subtract(piece_, cutter, distance_).inside.empty();
+  }
+
+  const std::vector<Vec3>& vertices_;
+  const MergedPolygons& merged_;
+  double distance_;
+  std::unique_ptr<BoxTree> tree_;
+  int polygon_of_tree_ = -1;
+  mutable ConvexPiece piece_;
+};
+
+/// Pairs of a group whose boxes have an area in common.
+void append_pairs(std::span<const int> group, const std::vector<Box>& boxes, double distance,
+                  std::vector<Pair>& pairs) {
+  const auto try_pair = [&](int a, int b) {
+    if (share_area(boxes[a], boxes[b], distance)) {
+      pairs.emplace_back(std::min(group[a], group[b]), std::max(group[a], group[b]));
+    }
+  };
+  const int count = static_cast<int>(group.size());
+  if (count > largest_sweep) {
+    const BoxTree tree(boxes);
+    for (int k = 0; k < count; ++k) {
+      tree.query(boxes[k], [&](int other) {
+        if (other > k) try_pair(k, other);
+      });
+    }
+    return;
+  }
+  Box all;
+  for (const Box& box : boxes) all.extend(box);
+  int axis = 0;
+  all.sizes().maxCoeff(&axis);
+  std::vector<std::pair<double, int>> order;
+  order.reserve(count);
+  for (int k = 0; k < count; ++k) order.emplace_back(boxes[k].min()[axis], k);
+  std::sort(order.begin(), order.end());
+  for (int i = 0; i < count; ++i) {
+    const double end = boxes[order[i].second].max()[axis] + apart * distance;
+    for (int k = i + 1; k < count && order[k].first <= end; ++k) try_pair(order[i].second, order[k].second);
+  }
+}
+
+}  // namespace
+
+std::vector<OverlappingPair> find_overlapping(const std::vector<Vec3>& vertices,
+                                              const MergedPolygons& merged) {
+  const std::vector<Frame>& frames = merged.polygons.frames;
+  OverlapTest test(vertices, merged);
+  Box all;
+  for (const Vec3& p : vertices) all.extend(p);
+  const PlaneGroups groups = group_by_plane(frames, all.center(), all.diagonal().norm());
+
+  std::vector<Pair> pairs;
+  std::vector<Box> boxes;
+  for (int g = 0; g < groups.size(); ++g) {
+    const auto group =
+        std::span(groups.members).subspan(groups.offsets[g], groups.offsets[g + 1] - groups.offsets[g]);
+    boxes.clear();
+    for (const int p : group) boxes.push_back(test.box(p));
+    append_pairs(group, boxes, test.distance(), pairs);
+  }
+  for (int p = 0; p < merged.polygons.size(); ++p) {
+    if (merged.polygons.irregular[p] && merged.triangles[p].size() > 1) pairs.emplace_back(p, p);
+  }
+  // by the polygon of more triangles, whose tree then serves all its pairs
+  const auto larger = [&](const Pair& pair) {
+    return merged.triangles[pair.first].size() < merged.triangles[pair.second].size() ? pair.second
+                                                                                      : pair.first;
+  };
+  std::sort(pairs.begin(), pairs.end(), [&](const Pair& x, const Pair& y) {
+    const int p = larger(x), q = larger(y);
+    return p != q ? p < q : x < y;
+  });
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+
+  std::vector<OverlappingPair> found;
+  for (const auto& [p, q] : pairs) {
+    if (p == q ? test.overlaps_itself(p) : test.overlap(p, q)) {
+      found.push_back({p, q, frames[p].n.dot(frames[q].n) < 0});
+    }
+  }
+  std::sort(found.begin(), found.end(), [](const OverlappingPair& x, const OverlappingPair& y) {
+    return x.first != y.first ? x.first < y.first : x.second < y.second;
+  });
+  return found;
+}
+
+}  // namespace luxel
