@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "box_pairs.h"
 #include "box_tree.h"
 #include "convex_clip.h"
 #include "plane_groups.h"
@@ -15,9 +16,6 @@
 namespace luxel {
 
 namespace {
-
-// Groups up to this size are swept along one axis; larger ones, which may fill a plane both ways, get a tree.
-constexpr int largest_sweep = 1024;
 
 // Pairs of triangles up to which they are tried one by one.
 constexpr std::size_t most_trials = 64;
@@ -31,10 +29,10 @@ constexpr double share_of_size = 1e-3;
 
 using Pair = std::pair<int, int>;
 
-/// Whether boxes have more in common than a point or a line.
-bool share_area(const Box& a, const Box& b, double distance) {
+/// Whether what boxes that touch have in common is wider than `least` in two directions.
+bool share_area(const Box& a, const Box& b, double least) {
   const Vec3 common = a.max().cwiseMin(b.max()) - a.min().cwiseMax(b.min());
-  return (common.array() > distance).count() >= 2 && (common.array() >= -apart * distance).all();
+  return (common.array() > least).count() >= 2;
 }
 
 /// Tells which polygons have a part of one plane in common.
@@ -45,9 +43,12 @@ class OverlapTest {
 
   double distance() const { return distance_; }
 
+  /// The box of a polygon, with half of what two may be apart on all sides.
   Box box(int polygon) const {
     Box box;
     for (const auto& segment : merged_.polygons.border(polygon)) box.extend(vertices_[segment[0]]);
+    box.min().array() -= apart / 2 * distance_;
+    box.max().array() += apart / 2 * distance_;
     return box;
   }
 
@@ -153,38 +154,6 @@ class OverlapTest {
   mutable ConvexPiece piece_;
 };
 
-/// Pairs of a group whose boxes have an area in common.
-void append_pairs(std::span<const int> group, const std::vector<Box>& boxes, double distance,
-                  std::vector<Pair>& pairs) {
-  const auto try_pair = [&](int a, int b) {
-    if (share_area(boxes[a], boxes[b], distance)) {
-      pairs.emplace_back(std::min(group[a], group[b]), std::max(group[a], group[b]));
-    }
-  };
-  const int count = static_cast<int>(group.size());
-  if (count > largest_sweep) {
-    const BoxTree tree(boxes);
-    for (int k = 0; k < count; ++k) {
-      tree.query(boxes[k], [&](int other) {
-        if (other > k) try_pair(k, other);
-      });
-    }
-    return;
-  }
-  Box all;
-  for (const Box& box : boxes) all.extend(box);
-  int axis = 0;
-  all.sizes().maxCoeff(&axis);
-  std::vector<std::pair<double, int>> order;
-  order.reserve(count);
-  for (int k = 0; k < count; ++k) order.emplace_back(boxes[k].min()[axis], k);
-  std::sort(order.begin(), order.end());
-  for (int i = 0; i < count; ++i) {
-    const double end = boxes[order[i].second].max()[axis] + apart * distance;
-    for (int k = i + 1; k < count && order[k].first <= end; ++k) try_pair(order[i].second, order[k].second);
-  }
-}
-
 }  // namespace
 
 std::vector<OverlappingPair> find_overlapping(const std::vector<Vec3>& vertices,
@@ -202,7 +171,9 @@ std::vector<OverlappingPair> find_overlapping(const std::vector<Vec3>& vertices,
         std::span(groups.members).subspan(groups.offsets[g], groups.offsets[g + 1] - groups.offsets[g]);
     boxes.clear();
     for (const int p : group) boxes.push_back(test.box(p));
-    append_pairs(group, boxes, test.distance(), pairs);
+    for (const auto& [a, b] : touching_pairs(boxes)) {
+      if (share_area(boxes[a], boxes[b], (1 + apart) * test.distance())) pairs.emplace_back(group[a], group[b]);
+    }
   }
   for (int p = 0; p < merged.polygons.size(); ++p) {
     if (merged.polygons.irregular[p] && merged.triangles[p].size() > 1) pairs.emplace_back(p, p);
