@@ -23,7 +23,8 @@ Vec2 vector(const Delaunay::Vertex_handle& v) {
 
 struct Part {
   int a, b;
-  bool border, fixed;
+  bool border;
+  double least;  // length that its halves must keep
 };
 
 struct Bad {
@@ -33,30 +34,38 @@ struct Bad {
 
 class Widener {
  public:
-  Widener(DomainTriangulation& triangulation, const PlanarDomain& domain, const std::vector<char>& fixed,
+  Widener(DomainTriangulation& triangulation, const PlanarDomain& domain, const std::vector<double>& least,
           double smallest)
       : delaunay_(triangulation.delaunay), vertices_(triangulation.vertices), smallest_(smallest) {
     for (const auto* list : {&domain.borders, &domain.creases}) {
       for (const auto& [a, b] : *list) {
-        parts_.push_back({a, b, list == &domain.borders, fixed[parts_.size()] != 0});
+        parts_.push_back({a, b, list == &domain.borders, least[parts_.size()]});
       }
     }
   }
 
+  /// Ends early where rounding lets two edges cross, in corners of next to no width.
   AddedPoints run(std::size_t most) {
-    for (bool changed = true; changed;) {
-      changed = false;
-      for (const Bad& bad : find_bad()) {
-        if (added_.inside.size() + added_.halved.size() >= most) return added_;
-        Delaunay::Face_handle face;
-        if (delaunay_.is_face(bad.corners[0], bad.corners[1], bad.corners[2], face) && mend(bad, face))
-          changed = true;
-      }
+    try {
+      widen(most);
+    } catch (const Delaunay::Intersection_of_constraints_exception&) {
     }
     return added_;
   }
 
  private:
+  void widen(std::size_t most) {
+    for (bool changed = true; changed;) {
+      changed = false;
+      for (const Bad& bad : find_bad()) {
+        if (added_.inside.size() + added_.halved.size() >= most) return;
+        Delaunay::Face_handle face;
+        if (delaunay_.is_face(bad.corners[0], bad.corners[1], bad.corners[2], face) && mend(bad, face))
+          changed = true;
+      }
+    }
+  }
+
   std::vector<Bad> find_bad() {
     std::unordered_set<std::uint64_t> borders;
     for (const Part& part : parts_) {
@@ -110,7 +119,7 @@ class Widener {
       added_.inside.push_back(point);
       return true;
     }
-    if (parts_[blocking].fixed || longest < shortest_halved * shortest) return false;
+    if (0.5 * longest < parts_[blocking].least || longest < shortest_halved * shortest) return false;
     return halve(blocking);
   }
 
@@ -138,7 +147,7 @@ class Widener {
     delaunay_.insert_constraint(vertices_[m], vertices_[part.b]);
     vertices_.back()->info() = m;
     parts_[index].b = m;
-    parts_.push_back({m, part.b, part.border, part.fixed});
+    parts_.push_back({m, part.b, part.border, part.least});
     added_.halved.push_back({part.a, part.b});
     return true;
   }
@@ -152,11 +161,11 @@ class Widener {
 
 }  // namespace
 
-AddedPoints widen_delaunay_angles(const PlanarDomain& domain, const std::vector<char>& fixed, double smallest,
-                                  std::size_t most) {
+AddedPoints widen_delaunay_angles(const PlanarDomain& domain, const std::vector<double>& least,
+                                  double smallest, std::size_t most) {
   const std::unique_ptr<DomainTriangulation> triangulation = triangulate_domain(domain);
   if (!triangulation) return {};
-  return Widener(*triangulation, domain, fixed, smallest).run(most);
+  return Widener(*triangulation, domain, least, smallest).run(most);
 }
 
 }  // namespace luxel

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "corner_positions.h"
 #include "patch_builder.h"
 #include "polygon.h"
 
@@ -15,9 +16,10 @@ struct Piece {
   char front, back;
 };
 
-void append_pieces_of(const Facets& facets, int facet, int polygon, std::vector<Piece>& pieces) {
+void append_pieces_of(const Facets& facets, CornerPositions& positions, int facet, int polygon,
+                      std::vector<Piece>& pieces) {
   const std::span<const int> loop = facets.loop(facet);
-  const std::vector<Vec3> points = facets.points(facet);
+  const std::span<const Vec3> points = positions(loop);
   const char front = facets.front[facet], back = facets.back[facet];
   if (loop.size() == 3 || (loop.size() == 4 && is_convex(points))) {
     pieces.push_back({{loop.begin(), loop.end()}, polygon, front, back});
@@ -46,11 +48,12 @@ void append_facets(PatchMesh& mesh, const Scene& scene, const Facets& facets,
   mesh.vertices = facets.vertices;
   reserve_patches(mesh, count_patches(facets));
   std::vector<Piece> pieces;
+  CornerPositions positions(facets.vertices);
   for (int begin = 0, end = 0; begin < facets.size(); begin = end) {
     const int face = facets.faces[begin];
     pieces.clear();
     for (; end < facets.size() && facets.faces[end] == face; ++end) {
-      append_pieces_of(facets, end, polygon_of_facet[end], pieces);
+      append_pieces_of(facets, positions, end, polygon_of_facet[end], pieces);
     }
     for (const Piece& piece : pieces) {
       if (piece.front) append_patch(mesh, scene, piece.corners, face, piece.polygon);

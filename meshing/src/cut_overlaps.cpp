@@ -8,7 +8,7 @@
 #include "box_tree.h"
 #include "convex_clip.h"
 #include "flat_polygons.h"
-#include "t_junctions.h"
+#include "vertices_on_edges.h"
 
 namespace luxel {
 

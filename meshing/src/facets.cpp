@@ -1,7 +1,11 @@
 #include "facets.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 
+#include "corner_positions.h"
 #include "ear_clipping.h"
 #include "luxel/input_error.h"
 #include "polygon.h"
@@ -12,18 +16,16 @@ namespace luxel {
 
 namespace {
 
-enum Side : char { no_side = 0, front_side = 1, back_side = 2 };
+// Faces that a thread takes at a time, at least.
+constexpr int faces_per_task = 2048;
 
-std::vector<Vec3> positions(const std::vector<Vec3>& vertices, std::span<const int> loop) {
-  std::vector<Vec3> points;
-  points.reserve(loop.size());
-  for (const int v : loop) points.push_back(vertices[v]);
-  return points;
-}
+enum Side : char { no_side = 0, front_side = 1, back_side = 2 };
 
 /// Every face's corners after welding, without corners that repeat the one before.
 Loops welded_loops(const Scene& scene, const WeldedVertices& welded) {
   Loops loops;
+  loops.offsets.reserve(scene.face_offsets.size());
+  loops.entries.reserve(scene.face_vertices.size());
   std::vector<int> loop;
   for (int f = 0; f < scene.face_count(); ++f) {
     loop.clear();
@@ -37,14 +39,35 @@ Loops welded_loops(const Scene& scene, const WeldedVertices& welded) {
   return loops;
 }
 
+enum class Shape : char { line, patch, polygon, bent };  // flat, a triangle or convex quad; flat; not flat
+
+std::vector<Shape> shapes_of(const Loops& loops, const std::vector<Vec3>& vertices) {
+  std::vector<Shape> shapes(loops.size());
+  tbb::parallel_for(tbb::blocked_range<int>(0, loops.size(), faces_per_task), [&](const auto& range) {
+    CornerPositions positions(vertices);
+    for (int f = range.begin(); f < range.end(); ++f) {
+      const std::span<const Vec3> points = positions(loops[f]);
+      if (!has_area(points)) {
+        shapes[f] = Shape::line;
+      } else if (!is_flat(points)) {
+        shapes[f] = Shape::bent;
+      } else {
+        const bool patch = points.size() <= 4 && (points.size() < 4 || is_convex(points));
+        shapes[f] = patch ? Shape::patch : Shape::polygon;
+      }
+    }
+  });
+  return shapes;
+}
+
 /// The sides of each face that no earlier face with the same corners has taken.
-std::vector<char> free_sides(const Scene& scene, const Loops& loops, const std::vector<char>& with_area,
+std::vector<char> free_sides(const Scene& scene, const Loops& loops, const std::vector<Shape>& shapes,
                              std::vector<int>& duplicates) {
   const RepeatedLoops repeated = find_repeated(loops);
   std::vector<char> taken(scene.face_count(), no_side);  // of the first loop, in its own orientation
   std::vector<char> sides(scene.face_count(), no_side);
   for (int f = 0; f < scene.face_count(); ++f) {
-    if (!with_area[f]) continue;
+    if (shapes[f] == Shape::line) continue;
     char& others = taken[repeated.first[f]];
     const Side own = repeated.reversed[f] ? back_side : front_side;
     const bool two_sided = scene.finishes[scene.face_finishes[f]].two_sided;
@@ -64,10 +87,6 @@ std::string count_of_faces(const std::vector<int>& faces, const std::string& one
 }
 
 }  // namespace
-
-std::vector<Vec3> Facets::points(int facet) const {
-  return positions(vertices, loop(facet));
-}
 
 std::vector<std::array<int, 3>> triangulate_loop(std::span<const Vec3> loop) {
   const auto [u, v] = plane_axes(area_vector(loop).normalized());
@@ -89,13 +108,12 @@ Facets make_facets(const Scene& scene) {
   facets.vertices = std::move(welded.positions);
   facets.welded_vertices = welded.welded;
 
-  std::vector<char> with_area(scene.face_count());
+  const std::vector<Shape> shapes = shapes_of(loops, facets.vertices);
   std::vector<int> degenerate, duplicates;
   for (int f = 0; f < scene.face_count(); ++f) {
-    with_area[f] = has_area(positions(facets.vertices, loops[f]));
-    if (!with_area[f]) degenerate.push_back(f);
+    if (shapes[f] == Shape::line) degenerate.push_back(f);
   }
-  const std::vector<char> sides = free_sides(scene, loops, with_area, duplicates);
+  const std::vector<char> sides = free_sides(scene, loops, shapes, duplicates);
 
   const auto append = [&](std::span<const int> loop, int face) {
     facets.loops.append(loop);
@@ -103,17 +121,21 @@ Facets make_facets(const Scene& scene) {
     facets.front.push_back((sides[face] & front_side) != 0);
     facets.back.push_back((sides[face] & back_side) != 0);
   };
+  facets.loops.offsets.reserve(loops.offsets.size());
+  facets.loops.entries.reserve(loops.entries.size());
+  facets.faces.reserve(loops.size());
+  facets.front.reserve(loops.size());
+  facets.back.reserve(loops.size());
+  CornerPositions positions(facets.vertices);
   for (int f = 0; f < scene.face_count(); ++f) {
     if (sides[f] == no_side) continue;
-    const std::vector<Vec3> points = positions(facets.vertices, loops[f]);
-    const bool flat = is_flat(points);
-    if (!flat || points.size() > 4 || (points.size() == 4 && !is_convex(points))) ++facets.split_faces;
-    if (flat) {
+    if (shapes[f] != Shape::patch) ++facets.split_faces;
+    if (shapes[f] != Shape::bent) {
       append(loops[f], f);
     } else {
-      for (const auto& t : triangulate_loop(points)) {
+      for (const auto& t : triangulate_loop(positions(loops[f]))) {
         const std::array<int, 3> triangle = {loops[f][t[0]], loops[f][t[1]], loops[f][t[2]]};
-        if (has_area(positions(facets.vertices, triangle))) append(triangle, f);
+        if (has_area(positions(triangle))) append(triangle, f);
       }
     }
   }

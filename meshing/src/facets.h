@@ -25,8 +25,6 @@ struct Facets {
 
   int size() const { return static_cast<int>(faces.size()); }
   std::span<const int> loop(int facet) const { return loops[facet]; }
-  /// The positions of a facet's corners.
-  std::vector<Vec3> points(int facet) const;
 };
 
 /// @throws InputError if no face has an area.

@@ -1,7 +1,11 @@
 #include "flat_polygons.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 
+#include "corner_positions.h"
 #include "polygon.h"
 
 namespace luxel {
@@ -11,6 +15,9 @@ namespace {
 // Sine of the largest turn that a straight border may have at a vertex; what it deviates by is bounded by the
 // region's own tolerance too.
 constexpr double straight_turn = 1e-3;
+
+// Facets that a thread takes at a time, at least.
+constexpr int facets_per_task = 4096;
 
 /// Distance of p from the line through a and b [m].
 double distance_to_line(const Vec3& p, const Vec3& a, const Vec3& b) {
@@ -56,19 +63,34 @@ class BorderWalker {
 
   /// The directed edges of each region that no other member of it runs against.
   void collect_borders(const EdgeTable& edges) {
+    const std::vector<char> uses = count_uses(edges);
     for (int r = 0; r < regions_.size(); ++r) {
       for (const int facet : regions_[r]) {
+        for (int h = facets_.loops.offsets[facet]; h < facets_.loops.offsets[facet + 1]; ++h) {
+          if (uses[h] > 1) irregular_[r] = true;
+          if (uses[h] > 0) borders_.push_back({edges.from(h), edges.to(h)});
+        }
+      }
+      offsets_.push_back(static_cast<int>(borders_.size()));
+    }
+  }
+
+  /// For each half-edge how often its region runs along it, less how often against it; 2 stands for more.
+  std::vector<char> count_uses(const EdgeTable& edges) const {
+    std::vector<char> uses(facets_.loops.entries.size());
+    tbb::parallel_for(tbb::blocked_range<int>(0, facets_.size(), facets_per_task), [&](const auto& range) {
+      for (int facet = range.begin(); facet < range.end(); ++facet) {
+        const int r = regions_.region_of_facet[facet];
         for (int h = facets_.loops.offsets[facet]; h < facets_.loops.offsets[facet + 1]; ++h) {
           int net = 0;
           for (const int g : edges.uses(h)) {
             if (regions_.region_of_facet[edges.loop(g)] == r) net += edges.from(g) == edges.from(h) ? 1 : -1;
           }
-          if (net > 1) irregular_[r] = true;
-          if (net > 0) borders_.push_back({edges.from(h), edges.to(h)});
+          uses[h] = static_cast<char>(std::clamp(net, 0, 2));
         }
       }
-      offsets_.push_back(static_cast<int>(borders_.size()));
-    }
+    });
+    return uses;
   }
 
   /// Chains the border of region r: next_ and previous_ hold on its vertices; -2 where it passes twice.
@@ -150,8 +172,9 @@ Frame fit_plane(const Facets& facets, const std::vector<Vec3>& areas, std::span<
   Vec3 moment = Vec3::Zero();
   double total = 0;
   const Vec3 start = facets.vertices[facets.loop(members[0])[0]];
+  CornerPositions positions(facets.vertices);
   for (const int facet : members) {
-    const std::vector<Vec3> points = facets.points(facet);
+    const std::span<const Vec3> points = positions(facets.loop(facet));
     const double weight = areas[facet].norm();
     area += areas[facet];
     moment += weight * (area_centroid(points, areas[facet]) - start);
@@ -169,9 +192,11 @@ Frame fit_plane(const Facets& facets, const std::vector<Vec3>& areas, std::span<
 }  // namespace
 
 std::vector<Vec3> facet_areas(const Facets& facets) {
-  std::vector<Vec3> areas;
-  areas.reserve(facets.size());
-  for (int i = 0; i < facets.size(); ++i) areas.push_back(area_vector(facets.points(i)));
+  std::vector<Vec3> areas(facets.size());
+  tbb::parallel_for(tbb::blocked_range<int>(0, facets.size(), facets_per_task), [&](const auto& range) {
+    CornerPositions positions(facets.vertices);
+    for (int i = range.begin(); i < range.end(); ++i) areas[i] = area_vector(positions(facets.loop(i)));
+  });
   return areas;
 }
 
@@ -181,8 +206,13 @@ FlatPolygons make_flat_polygons(const Facets& facets, const std::vector<Vec3>& a
   polygons.irregular = std::move(irregular);
   polygons.irregular.resize(regions.size(), false);
   BorderWalker walker(facets, regions, edges, polygons.irregular);
+  polygons.frames.resize(regions.size());
+  tbb::parallel_for(tbb::blocked_range<int>(0, regions.size()), [&](const auto& range) {
+    for (int r = range.begin(); r < range.end(); ++r) {
+      polygons.frames[r] = fit_plane(facets, areas, regions[r]);
+    }
+  });
   for (int r = 0; r < regions.size(); ++r) {
-    polygons.frames.push_back(fit_plane(facets, areas, regions[r]));
     walker.append_segments(r, polygons.segments);
     polygons.segment_offsets.push_back(static_cast<int>(polygons.segments.size()));
   }

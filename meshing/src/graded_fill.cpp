@@ -1,6 +1,7 @@
 #include "graded_fill.h"
 
 #include <algorithm>
+#include <limits>
 #include <unordered_map>
 
 #include "angle.h"
@@ -13,6 +14,11 @@ namespace {
 
 // How often a polygon's neighbours may be told of points on their edges. Rooms need up to ten.
 constexpr int rounds = 40;
+
+// What parts of an edge may be halved down to, as a share of those that it was divided into: six halvings
+// make up for a part of a polygon some sixty times narrower than patches are long. Without an end, polygons
+// that meet in a sharp corner would halve their edges there in turn down to rounding.
+constexpr double least_share = 1.0 / 64;
 
 // Points that may be added: this many, and this share of those that there are. Narrow parts of a room of a
 // few polygons need some hundred; a corner of a thousandth of a degree would need millions.
@@ -44,7 +50,13 @@ class Grader {
         most_(vertices.size() + most_added +
               static_cast<std::size_t>(most_added_share * static_cast<double>(vertices.size()))),
         fills_on_edge_(plan.edges.size()),
+        least_(plan.edges.size(), std::numeric_limits<double>::infinity()),
         changed_(fills_.size(), false) {
+    for (int e = 0; e < plan.edges.size(); ++e) {
+      if (plan.edges.is_given(e)) continue;
+      const auto [a, b] = plan.edges.ends(e);
+      least_[e] = least_share * (vertices[b] - vertices[a]).norm() / plan.edges.parts(e);
+    }
     for (int i = 0; i < static_cast<int>(fills_.size()); ++i) {
       waiting_.push_back(has_below(smallest_angle, fills_[i], vertices));
       for (const auto& [a, b] : plan.merged.polygons.border(fills_[i].polygon)) note(i, a, b);
@@ -72,9 +84,9 @@ class Grader {
 
   void widen(int i) {
     PolygonDomain local = filler_.domain(fills_[i].polygon, fills_[i].inside, vertices_);
-    std::vector<char> fixed;
-    for (const int edge : local.edges) fixed.push_back(plan_.edges.is_given(edge));
-    const AddedPoints added = widen_angles(local.domain, fixed, smallest_angle_, most_ - vertices_.size());
+    std::vector<double> least;
+    for (const int edge : local.edges) least.push_back(least_[edge]);
+    const AddedPoints added = widen_angles(local.domain, least, smallest_angle_, most_ - vertices_.size());
     if (added.inside.empty() && added.halved.empty()) return;
     changed_[i] = true;
     halve(i, std::move(local), added.halved);
@@ -112,6 +124,7 @@ class Grader {
   std::vector<Vec3>& vertices_;
   std::size_t before_, most_;  // vertices at first, and at the end at most
   std::vector<std::vector<int>> fills_on_edge_;
+  std::vector<double> least_;  // for each edge the length that halves of its parts must keep
   std::vector<char> waiting_, changed_;
 };
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "box_tree.h"
-#include "t_junctions.h"
+#include "vertices_on_edges.h"
 
 namespace luxel {
 

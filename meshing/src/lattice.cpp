@@ -58,6 +58,11 @@ double HexagonalLattice::column_of(int row, double x) const {
   return x / column_step_ - (row & 1) * 0.5;
 }
 
+/// The first row that is not below an ordinate from the bottom.
+int HexagonalLattice::row_from(double y) const {
+  return static_cast<int>(std::ceil(y / row_step_));
+}
+
 void HexagonalLattice::find_runs(std::span<const std::array<Vec2, 2>> border) {
   const Vec2 across(-along_.y(), along_.x());
   std::vector<std::vector<double>> crossings(row_count_);
@@ -65,9 +70,11 @@ void HexagonalLattice::find_runs(std::span<const std::array<Vec2, 2>> border) {
     Vec2 a((part[0] - origin_).dot(along_), (part[0] - origin_).dot(across) - bottom_);
     Vec2 b((part[1] - origin_).dot(along_), (part[1] - origin_).dot(across) - bottom_);
     if (a.y() > b.y()) std::swap(a, b);
-    // Half open, so that a corner on a row counts once. The first and the last row touch the border only.
-    const int first = std::max(1, static_cast<int>(std::ceil(a.y() / row_step_)));
-    for (int row = first; row + 1 < row_count_ && row * row_step_ < b.y(); ++row) {
+    // Half open, so that a corner on a row counts once: the row from a point on is the same for both parts
+    // that end there. The first and the last row touch the border only.
+    const int first = std::max(1, row_from(a.y()));
+    const int end = std::min(row_count_ - 1, row_from(b.y()));
+    for (int row = first; row < end; ++row) {
       const double share = std::clamp((row * row_step_ - a.y()) / (b.y() - a.y()), 0.0, 1.0);
       crossings[row].push_back(a.x() + (b.x() - a.x()) * share);
     }

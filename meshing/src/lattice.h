@@ -29,6 +29,7 @@ class HexagonalLattice {
 
   Vec2 place(int row, int column) const;
   double column_of(int row, double x) const;
+  int row_from(double y) const;
   void find_runs(std::span<const std::array<Vec2, 2>> border);
   void clear_near(const Vec2& a, const Vec2& b);
 

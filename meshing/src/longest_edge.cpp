@@ -37,7 +37,9 @@ void LongestEdgeRefiner::push(int mesh, int edge) {
   queue_.push({(vertices_[b] - vertices_[a]).squaredNorm(), {a, b}, mesh, edge});
 }
 
-void LongestEdgeRefiner::split(const Entry& longest) {
+void LongestEdgeRefiner::split_longest() {
+  const Entry longest = queue_.top();
+  queue_.pop();
   const auto [a, b] = longest.ends;
   const int m = static_cast<int>(vertices_.size());
   vertices_.push_back(0.5 * (vertices_[a] + vertices_[b]));
@@ -46,25 +48,30 @@ void LongestEdgeRefiner::split(const Entry& longest) {
     midpoints_.emplace(edge_key(a, m), -1);
     midpoints_.emplace(edge_key(m, b), -1);
   }
-  for (const int edge : meshes_[longest.mesh]->split(longest.edge, m)) push(longest.mesh, edge);
+  SplitMesh& mesh = *meshes_[longest.mesh];
+  const int before = mesh.triangle_count();
+  for (const int edge : mesh.split(longest.edge, m)) push(longest.mesh, edge);
+  history_.push_back({longest.squared_length,
+                      count(history_.size()) + static_cast<std::size_t>(mesh.triangle_count() - before)});
 }
 
 void LongestEdgeRefiner::refine(double longest) {
-  std::size_t count = triangles_of(meshes_);
-  while (!queue_.empty() && queue_.top().squared_length > longest * longest) {
-    const Entry entry = queue_.top();
-    queue_.pop();
-    count -= static_cast<std::size_t>(meshes_[entry.mesh]->triangle_count());
-    split(entry);
-    count += static_cast<std::size_t>(meshes_[entry.mesh]->triangle_count());
-    history_.push_back({entry.squared_length, static_cast<double>(count)});
-  }
+  while (!queue_.empty() && queue_.top().squared_length > longest * longest) split_longest();
 }
 
-std::size_t LongestEdgeRefiner::count(double longest) const {
-  const auto after = std::partition_point(history_.begin(), history_.end(),
-                                          [&](const auto& step) { return step[0] > longest * longest; });
-  return after == history_.begin() ? initial_ : static_cast<std::size_t>((*(after - 1))[1]);
+void LongestEdgeRefiner::halve(std::size_t halvings) {
+  while (!queue_.empty() && history_.size() < halvings) split_longest();
+}
+
+std::size_t LongestEdgeRefiner::halvings(double longest) const {
+  const auto after = std::partition_point(history_.begin(), history_.end(), [&](const Halving& halving) {
+    return halving.squared_length > longest * longest;
+  });
+  return static_cast<std::size_t>(after - history_.begin());
+}
+
+std::size_t LongestEdgeRefiner::count(std::size_t halvings) const {
+  return halvings == 0 ? initial_ : history_[halvings - 1].triangles;
 }
 
 std::vector<std::array<int, 3>> LongestEdgeRefiner::triangles() const {

@@ -29,8 +29,14 @@ class LongestEdgeRefiner {
   /// New vertices are appended to `vertices`.
   void refine(double longest);
 
-  /// How many triangles refine(longest) would have given, for any `longest` not below one refined to.
-  std::size_t count(double longest) const;
+  /// The first `halvings` edges that refine() would halve, longest first, those halved before among them.
+  void halve(std::size_t halvings);
+
+  /// How many edges refine(longest) would have halved, for any `longest` not below one refined to.
+  std::size_t halvings(double longest) const;
+
+  /// How many triangles there were after so many halvings, no more than were made.
+  std::size_t count(std::size_t halvings) const;
 
   /// Of all meshes, one after the other.
   std::vector<std::array<int, 3>> triangles() const;
@@ -48,13 +54,18 @@ class LongestEdgeRefiner {
   };
 
   void push(int mesh, int edge);
-  void split(const Entry& longest);
+  void split_longest();
 
   std::vector<Vec3>& vertices_;
   std::vector<std::unique_ptr<SplitMesh>> meshes_;
   std::priority_queue<Entry> queue_;
   std::unordered_map<std::uint64_t, int> midpoints_;  // of watched edges and their parts; -1: not split yet
-  std::vector<std::array<double, 2>> history_;        // squared length of each split edge, triangles after it
+
+  struct Halving {
+    double squared_length;  // of the edge
+    std::size_t triangles;  // after it
+  };
+  std::vector<Halving> history_;
   std::size_t initial_ = 0;
 };
 

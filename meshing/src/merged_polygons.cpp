@@ -1,5 +1,6 @@
 #include "merged_polygons.h"
 
+#include "corner_positions.h"
 #include "polygon.h"
 #include "triangulate.h"
 
@@ -12,9 +13,10 @@ using Triangles = std::vector<std::array<int, 3>>;
 /// Triangles of the facets of one region, over the facets' vertices.
 Triangles facet_triangles(const Facets& facets, std::span<const int> members) {
   Triangles triangles;
+  CornerPositions positions(facets.vertices);
   for (const int facet : members) {
     const auto loop = facets.loop(facet);
-    for (const auto& [a, b, c] : triangulate_loop(facets.points(facet))) {
+    for (const auto& [a, b, c] : triangulate_loop(positions(loop))) {
       triangles.push_back({loop[a], loop[b], loop[c]});
     }
   }
@@ -55,16 +57,16 @@ class PolygonTriangulator {
 
 }  // namespace
 
-MergedPolygons merge_facets(const Facets& facets, const std::function<bool(int, int)>& may_join) {
-  MergedPolygons merged{
-      EdgeTable(facets.loops, static_cast<int>(facets.vertices.size())), facet_areas(facets), {}, {}, {}};
-  merged.regions = grow_regions(facets, merged.areas, merged.edges, may_join);
+MergedPolygons merge_facets(const Facets& facets, const EdgeTable& edges,
+                            const std::function<bool(int, int)>& may_join) {
+  MergedPolygons merged{facet_areas(facets), {}, {}, {}};
+  merged.regions = grow_regions(facets, merged.areas, edges, may_join);
   PolygonTriangulator triangulator(facets);
   std::vector<char> irregular;
   for (bool settled = false; !settled;) {
     // What cannot be triangulated falls back to its facets, whose vertices its neighbours then keep too.
     settled = true;
-    merged.polygons = make_flat_polygons(facets, merged.areas, merged.edges, merged.regions, irregular);
+    merged.polygons = make_flat_polygons(facets, merged.areas, edges, merged.regions, irregular);
     merged.triangles.assign(merged.regions.size(), {});
     irregular = merged.polygons.irregular;
     for (int p = 0; p < merged.regions.size(); ++p) {

@@ -6,7 +6,6 @@ namespace luxel {
 
 /// Facets merged into flat polygons with holes, and those cut into triangles.
 struct MergedPolygons {
-  EdgeTable edges;          ///< of the facets
   std::vector<Vec3> areas;  ///< of the facets: area vectors [m2]
   Regions regions;          ///< polygon p is region p
   FlatPolygons polygons;
@@ -14,7 +13,8 @@ struct MergedPolygons {
 };
 
 /// Merges facets across edges where may_join(facet, facet) allows it. A region whose border crosses itself
-/// keeps its facets' triangles and all their vertices. Cost: n log n.
-MergedPolygons merge_facets(const Facets& facets, const std::function<bool(int, int)>& may_join);
+/// keeps its facets' triangles and all their vertices. `edges` are those of the facets. Cost: n log n.
+MergedPolygons merge_facets(const Facets& facets, const EdgeTable& edges,
+                            const std::function<bool(int, int)>& may_join);
 
 }  // namespace luxel

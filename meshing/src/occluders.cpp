@@ -39,8 +39,8 @@ std::vector<std::array<int, 2>> name_polygons(const std::vector<OverlappingPair>
 
 }  // namespace
 
-FacetOccluders make_occluders(const Facets& facets) {
-  MergedPolygons merged = merge_facets(facets, [](int, int) { return true; });
+FacetOccluders make_occluders(const Facets& facets, const EdgeTable& edges) {
+  MergedPolygons merged = merge_facets(facets, edges, [](int, int) { return true; });
   const Regions& regions = merged.regions;
   const RepeatedLoops repeated = find_coincident(merged.polygons);
 

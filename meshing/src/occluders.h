@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "edge_table.h"
 #include "facets.h"
 #include "luxel/patch_mesh.h"
 #include "overlapping_polygons.h"
@@ -18,8 +19,8 @@ struct FacetOccluders {
 };
 
 /// Coplanar facets merged into polygons, whatever their materials, and cut into triangles. The merged surface
-/// has no gap that the facets did not have; polygons that coincide, from either side, stand once. Cost: n log
-/// n.
-FacetOccluders make_occluders(const Facets& facets);
+/// has no gap that the facets did not have; polygons that coincide, from either side, stand once. `edges` are
+/// those of the facets. Cost: n log n.
+FacetOccluders make_occluders(const Facets& facets, const EdgeTable& edges);
 
 }  // namespace luxel

@@ -10,7 +10,7 @@
 #include "box_tree.h"
 #include "convex_clip.h"
 #include "plane_groups.h"
-#include "t_junctions.h"
+#include "vertices_on_edges.h"
 #include "weld.h"
 
 namespace luxel {
@@ -172,7 +172,8 @@ std::vector<OverlappingPair> find_overlapping(const std::vector<Vec3>& vertices,
     boxes.clear();
     for (const int p : group) boxes.push_back(test.box(p));
     for (const auto& [a, b] : touching_pairs(boxes)) {
-      if (share_area(boxes[a], boxes[b], (1 + apart) * test.distance())) pairs.emplace_back(group[a], group[b]);
+      if (share_area(boxes[a], boxes[b], (1 + apart) * test.distance()))
+        pairs.emplace_back(group[a], group[b]);
     }
   }
   for (int p = 0; p < merged.polygons.size(); ++p) {

@@ -1,8 +1,21 @@
 #include "patch_builder.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+#include "corner_positions.h"
 #include "polygon.h"
 
 namespace luxel {
+
+namespace {
+
+// Patches that a thread takes at a time, at least.
+constexpr int patches_per_task = 2048;
+
+}  // namespace
 
 PatchMesh empty_mesh(const Scene& scene) {
   PatchMesh mesh;
@@ -17,17 +30,8 @@ PatchMesh empty_mesh(const Scene& scene) {
 
 void append_patch(PatchMesh& mesh, const Scene& scene, std::span<const int> corners, int face, int polygon) {
   std::array<int, 4> row = {-1, -1, -1, -1};
-  std::array<Vec3, 4> storage;
-  for (std::size_t k = 0; k < corners.size(); ++k) {
-    row[k] = corners[k];
-    storage[k] = mesh.vertices[corners[k]];
-  }
-  const std::span<const Vec3> points = std::span(storage).first(corners.size());
-  const Vec3 area = area_vector(points);
+  std::ranges::copy(corners, row.begin());
   mesh.corners.push_back(row);
-  mesh.normals.push_back(area.normalized());
-  mesh.centroids.push_back(area_centroid(points, area));
-  mesh.areas.push_back(area.norm());
   mesh.faces.push_back(face);
   mesh.groups.push_back(scene.face_groups[face]);
   mesh.materials.push_back(scene.face_materials[face]);
@@ -35,11 +39,24 @@ void append_patch(PatchMesh& mesh, const Scene& scene, std::span<const int> corn
   mesh.polygons.push_back(polygon);
 }
 
+void measure_patches(PatchMesh& mesh) {
+  mesh.normals.resize(mesh.size());
+  mesh.centroids.resize(mesh.size());
+  mesh.areas.resize(mesh.size());
+  tbb::parallel_for(tbb::blocked_range<int>(0, mesh.size(), patches_per_task), [&](const auto& range) {
+    CornerPositions positions(mesh.vertices);
+    for (int i = range.begin(); i < range.end(); ++i) {
+      const std::span<const Vec3> points = positions(std::span(mesh.corners[i]).first(mesh.corner_count(i)));
+      const Vec3 area = area_vector(points);
+      mesh.normals[i] = area.normalized();
+      mesh.centroids[i] = area_centroid(points, area);
+      mesh.areas[i] = area.norm();
+    }
+  });
+}
+
 void reserve_patches(PatchMesh& mesh, std::size_t count) {
   mesh.corners.reserve(count);
-  mesh.normals.reserve(count);
-  mesh.centroids.reserve(count);
-  mesh.areas.reserve(count);
   mesh.faces.reserve(count);
   mesh.groups.reserve(count);
   mesh.materials.reserve(count);

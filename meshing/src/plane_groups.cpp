@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "order_by_key.h"
+
 namespace luxel {
 
 namespace {
@@ -25,6 +27,9 @@ const Vec3 canonical_side(0.3701, 0.5393, 0.7564);
 
 // Bits of the filter for each entry: one in so many planes of its own then takes part in the sort.
 constexpr std::uint64_t bits_per_entry = 8;
+
+// Bits of a key: three passes of a radix sort; two planes in 10^10 share one by chance, which costs a test.
+constexpr int key_bits = 33;
 
 struct Entry {
   std::uint64_t key;
@@ -52,7 +57,7 @@ std::uint64_t mixed(std::int64_t a, std::int64_t b, std::int64_t c) {
     h = (h ^ static_cast<std::uint64_t>(x)) * 0xff51afd7ed558ccdull;
     h ^= h >> 32;
   }
-  return h;
+  return h >> (64 - key_bits);
 }
 
 void append(const Vec3& normal, double distance, int polygon, std::vector<Entry>& entries) {
@@ -95,14 +100,15 @@ PlaneGroups group_by_plane(const std::vector<Frame>& frames, const Vec3& centre,
     if (std::abs(side) < plane_tolerance) append(-sign * frame.n, -sign * distance, p, entries);
   }
   drop_lone(entries);
-  std::sort(entries.begin(), entries.end(), [](const Entry& x, const Entry& y) {
-    return x.key != y.key ? x.key < y.key : x.polygon < y.polygon;
-  });
+  std::vector<std::uint64_t> keys;
+  keys.reserve(entries.size());
+  for (const Entry& entry : entries) keys.push_back(entry.key);
+  const std::vector<int> order = order_by_key(keys);
   PlaneGroups groups;
-  for (std::size_t begin = 0, end = 0; begin < entries.size(); begin = end) {
-    while (end < entries.size() && entries[end].key == entries[begin].key) ++end;
+  for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
+    while (end < order.size() && keys[order[end]] == keys[order[begin]]) ++end;
     if (end - begin < 2) continue;
-    for (std::size_t k = begin; k < end; ++k) groups.members.push_back(entries[k].polygon);
+    for (std::size_t k = begin; k < end; ++k) groups.members.push_back(entries[order[k]].polygon);
     groups.offsets.push_back(static_cast<int>(groups.members.size()));
   }
   return groups;

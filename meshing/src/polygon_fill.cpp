@@ -7,13 +7,17 @@
 
 namespace luxel {
 
-void PolygonFiller::divide(const Frame& frame, int a, int b, double edge_length,
+void PolygonFiller::divide(const Frame& frame, int a, int b, const Sizing& sizing,
                            std::vector<Part>& parts) const {
   const Vec2 start = frame.flat(corners_[a]);
   const Vec2 d = frame.flat(corners_[b]) - start;
-  const int count = SharedEdges::parts(d.norm(), edge_length);
-  for (int k = 0; k < count; ++k) {
-    parts.push_back({start + d * (static_cast<double>(k) / count), start + d * ((k + 1.0) / count)});
+  const int count = sizing.parts(d.norm(), plan_.turns.of_edge[plan_.edges.find(a, b)]);
+  // Parts end where the next ones start, to the last bit: the lattice counts how often its rows cross them.
+  Vec2 from = start;
+  for (int k = 1; k <= count; ++k) {
+    const Vec2 to = k < count ? start + d * (static_cast<double>(k) / count) : frame.flat(corners_[b]);
+    parts.push_back({from, to});
+    from = to;
   }
 }
 
@@ -27,22 +31,23 @@ PolygonFiller::Part PolygonFiller::longest_side(int p) const {
   return longest;
 }
 
-double PolygonFiller::count(int p, double edge_length) const {
+double PolygonFiller::count(int p, const Sizing& sizing) const {
   const Frame& frame = plan_.merged.polygons.frames[p];
   const auto border = plan_.merged.polygons.border(p);
   std::vector<Part> border_parts, crease_parts;
   std::unordered_set<int> on_border, inside;
   for (const auto& [a, b] : border) {
-    divide(frame, a, b, edge_length, border_parts);
+    divide(frame, a, b, sizing, border_parts);
     on_border.insert(a);
   }
   for (const auto& [a, b] : plan_.creases[p]) {
-    divide(frame, a, b, edge_length, crease_parts);
+    divide(frame, a, b, sizing, crease_parts);
     for (const int v : {a, b}) {
       if (!on_border.contains(v)) inside.insert(v);
     }
   }
-  const HexagonalLattice lattice(border_parts, crease_parts, longest_side(p), edge_length);
+  const HexagonalLattice lattice(border_parts, crease_parts, longest_side(p),
+                                 sizing.at(plan_.turns.of_polygon[p]));
   // Euler: T = 2 V - E_border - 2 chi, with chi of the polygon from its coarsest triangulation.
   const double twice_chi = 2.0 * static_cast<double>(on_border.size()) - static_cast<double>(border.size()) -
                            static_cast<double>(plan_.merged.triangles[p].size());
@@ -86,7 +91,7 @@ PolygonDomain PolygonFiller::domain(int p, const std::vector<int>& inside,
   return result;
 }
 
-PolygonFill PolygonFiller::fill(int p, double edge_length, std::vector<Vec3>& vertices) {
+PolygonFill PolygonFiller::fill(int p, const Sizing& sizing, std::vector<Vec3>& vertices) {
   const PlanarDomain outline = domain(p, {}, vertices).domain;
   const auto parts = [&](const std::vector<std::array<int, 2>>& list) {
     std::vector<Part> result;
@@ -95,7 +100,7 @@ PolygonFill PolygonFiller::fill(int p, double edge_length, std::vector<Vec3>& ve
     return result;
   };
   const HexagonalLattice lattice(parts(outline.borders), parts(outline.creases), longest_side(p),
-                                 edge_length);
+                                 sizing.at(plan_.turns.of_polygon[p]));
   PolygonFill result{p, {}, {}};
   for (const Vec2& point : lattice.points()) {
     result.inside.push_back(static_cast<int>(vertices.size()));

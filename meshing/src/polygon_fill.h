@@ -25,11 +25,11 @@ class PolygonFiller {
  public:
   PolygonFiller(const std::vector<Vec3>& corners, const SurfacePlan& plan) : corners_(corners), plan_(plan) {}
 
-  /// How many triangles fill(p) will make at this edge length, all edges divided evenly.
-  double count(int p, double edge_length) const;
+  /// How many triangles fill(p) will make, all edges divided evenly.
+  double count(int p, const Sizing& sizing) const;
 
   /// Triangles over `vertices`, to which points inside are appended; the plan's edges are divided already.
-  PolygonFill fill(int p, double edge_length, std::vector<Vec3>& vertices);
+  PolygonFill fill(int p, const Sizing& sizing, std::vector<Vec3>& vertices);
 
   /// The same polygon cut anew, after points were added to its edges or inside.
   PolygonFill refill(PolygonFill fill, const std::vector<Vec3>& vertices);
@@ -39,7 +39,7 @@ class PolygonFiller {
  private:
   using Part = std::array<Vec2, 2>;
 
-  void divide(const Frame& frame, int a, int b, double edge_length, std::vector<Part>& parts) const;
+  void divide(const Frame& frame, int a, int b, const Sizing& sizing, std::vector<Part>& parts) const;
   Part longest_side(int p) const;
 
   const std::vector<Vec3>& corners_;  // the facets' vertices

@@ -1,8 +1,10 @@
 #include "regions.h"
 
 #include <algorithm>
-#include <numeric>
+#include <bit>
+#include <cstdint>
 
+#include "order_by_key.h"
 #include "polygon.h"
 #include "weld.h"
 
@@ -27,12 +29,13 @@ Regions grow_regions(const Facets& facets, const std::vector<Vec3>& areas, const
   const double size = diagonal(facets.vertices);
   const double noise = rounding(facets.vertices);
   std::vector<double> magnitudes;
+  magnitudes.reserve(areas.size());
   for (const Vec3& area : areas) magnitudes.push_back(area.norm());
-  std::vector<int> order(facets.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [&](int a, int b) {
-    return magnitudes[a] != magnitudes[b] ? magnitudes[a] > magnitudes[b] : a < b;
-  });
+  // The bits of numbers >= 0 are in their order: turned over, the largest first.
+  std::vector<std::uint64_t> keys;
+  keys.reserve(magnitudes.size());
+  for (const double magnitude : magnitudes) keys.push_back(~std::bit_cast<std::uint64_t>(magnitude));
+  const std::vector<int> order = order_by_key(keys);
 
   Regions regions;
   regions.region_of_facet.assign(facets.size(), -1);
@@ -62,7 +65,7 @@ Regions grow_regions(const Facets& facets, const std::vector<Vec3>& areas, const
       for (int h = facets.loops.offsets[member]; h < facets.loops.offsets[member + 1]; ++h) {
         for (const int g : edges.uses(h)) {
           const int facet = edges.loop(g);
-          if (edges.from(g) == edges.from(h) || regions.region_of_facet[facet] >= 0) continue;
+          if (regions.region_of_facet[facet] >= 0 || edges.from(g) == edges.from(h)) continue;
           if (!may_join(member, facet) || !fits(facet)) continue;
           regions.region_of_facet[facet] = region;
           regions.members.push_back(facet);

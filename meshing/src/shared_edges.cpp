@@ -18,11 +18,7 @@ int SharedEdges::find(int a, int b) const {
   return found == index_.end() ? -1 : found->second;
 }
 
-int SharedEdges::parts(double length, double edge_length) {
-  return std::max(1, static_cast<int>(std::lround(length / edge_length)));
-}
-
-void SharedEdges::divide(std::vector<Vec3>& vertices, double edge_length,
+void SharedEdges::divide(std::vector<Vec3>& vertices, const std::function<int(int, double)>& parts_of,
                          const std::function<std::optional<std::vector<int>>(int, int)>& given) {
   between_.assign(ends_.size(), {});
   given_.assign(ends_.size(), false);
@@ -35,7 +31,7 @@ void SharedEdges::divide(std::vector<Vec3>& vertices, double edge_length,
     }
     const Vec3 start = vertices[a];
     const Vec3 d = vertices[b] - start;
-    const int count = parts(d.norm(), edge_length);
+    const int count = parts_of(e, d.norm());
     for (int k = 1; k < count; ++k) {
       between_[e].push_back(static_cast<int>(vertices.size()));
       vertices.push_back(start + d * (static_cast<double>(k) / count));

@@ -24,9 +24,12 @@ class SharedEdges {
   int find(int a, int b) const;
 
   /// Divides every edge: by the points between its ends that given(a, b) lists, or, where that has nothing to
-  /// say, into equal parts of about edge_length, whose points are appended to `vertices`.
-  void divide(std::vector<Vec3>& vertices, double edge_length,
+  /// say, into parts_of(edge, its length) equal parts, whose points are appended to `vertices`.
+  void divide(std::vector<Vec3>& vertices, const std::function<int(int, double)>& parts_of,
               const std::function<std::optional<std::vector<int>>(int, int)>& given);
+
+  /// Into how many parts an edge is divided, after divide().
+  int parts(int edge) const { return static_cast<int>(between_[edge].size()) + 1; }
 
   /// Whether the points of an edge were given, after divide().
   bool is_given(int edge) const { return given_[edge]; }
@@ -36,9 +39,6 @@ class SharedEdges {
 
   /// The points from a to b, both included, after divide().
   std::vector<int> points(int a, int b) const;
-
-  /// Into how many parts an edge of this length is divided.
-  static int parts(double length, double edge_length);
 
  private:
   std::vector<std::array<int, 2>> ends_;

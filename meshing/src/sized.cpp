@@ -10,17 +10,12 @@
 #include "patch_builder.h"
 #include "patch_limit.h"
 #include "sized_mesher.h"
+#include "sizing_search.h"
 #include "t_junctions.h"
 
 namespace luxel {
 
 namespace {
-
-// How near the number of patches must come to what is asked, relative; half of what is promised.
-constexpr double count_tolerance = 0.01;
-
-// Trials that the search for an edge length may take; the count is no smooth function of it for few patches.
-constexpr int trials = 12;
 
 // Angles that the fill shall not fall below [degrees], the widest first: narrower ones are taken where a
 // scene of narrow parts cannot have the wider ones with the patches asked for. Refinement is sure to end up
@@ -31,10 +26,17 @@ constexpr std::array smallest_angles = {25.0, 20.0, 15.0, 10.0, 5.0, 0.0};
 // search may make for one angle.
 constexpr double fill_tolerance = 0.02;
 constexpr double promised_tolerance = 0.05;
-constexpr int fill_trials = 6;
+constexpr int fill_trials = 10;
 
 // Longest edge of a fill over its edge length, about: the first guess for patch_size.
 constexpr double longest_over_edge_length = 1.45;
+
+// How much more than the ratio says the edge length is shortened with each trial for patch_size, since the
+// longest edge follows it in steps; how many trials there may be; by how much parts of edges are shorter than
+// asked, for the sake of rounding.
+constexpr double trial_step = 0.001;
+constexpr int trials = 12;
+constexpr double spare = 1e-9;
 
 double radiating_area(const Facets& facets) {
   const std::vector<Vec3> areas = facet_areas(facets);
@@ -46,29 +48,6 @@ double radiating_area(const Facets& facets) {
 /// Edge length [m] of n equilateral triangles of this area together.
 double equilateral_edge(double area, double n) {
   return std::sqrt(4 * area / (std::sqrt(3.0) * n));
-}
-
-/// The edge length that gives about n patches.
-double find_edge_length(SizedMesher& mesher, double guess, double n) {
-  double best = guess;
-  double best_error = std::numeric_limits<double>::infinity();
-  double low = 0;  // gives too many
-  double high = std::numeric_limits<double>::infinity();
-  double edge_length = guess;
-  for (int trial = 0; trial < trials; ++trial) {
-    const double found = mesher.count(edge_length);
-    const double error = std::abs(found / n - 1);
-    if (error < best_error) {
-      best_error = error;
-      best = edge_length;
-    }
-    if (error <= count_tolerance) break;
-    (found > n ? low : high) = edge_length;
-    double next = edge_length * std::sqrt(found / n);
-    if (!(next > low && next < high)) next = std::isfinite(high) ? 0.5 * (low + high) : 2 * low;
-    edge_length = next;
-  }
-  return best;
 }
 
 double longest_edge(const Filled& filled) {
@@ -83,7 +62,7 @@ double longest_edge(const Filled& filled) {
 
 struct Sized {
   Filled filled;
-  double edge_length = 0;
+  Sizing sizing;
   double error = std::numeric_limits<double>::infinity();  // of the count, relative
 };
 
@@ -92,18 +71,25 @@ struct Sized {
 Sized fill_with_angle(SizedMesher& mesher, double guess, double n, double smallest_angle,
                       const std::function<void(double)>& refuse, const Progress& progress) {
   Sized best;
-  double edge_length = guess;
+  Sizing sizing = {guess, guess, 0};
   double aim = n;
+  double too_few = 0;  // aims
+  double too_many = std::numeric_limits<double>::infinity();
   for (int trial = 0; trial < fill_trials; ++trial) {
-    edge_length = find_edge_length(mesher, edge_length, aim);
-    refuse(mesher.count(edge_length));
-    Filled filled = mesher.fill(edge_length, smallest_angle, progress);
+    sizing = find_sizing(mesher, sizing.edge_length, aim);
+    const double expected = mesher.count(sizing);
+    refuse(expected);
+    Filled filled = mesher.fill(sizing, smallest_angle, progress);
     const double found = mesher.count(filled);
     const bool again = filled.graded && filled.complete;
     const double error = std::abs(found / n - 1);
-    if (error < best.error) best = {std::move(filled), edge_length, error};
-    if (error <= fill_tolerance || !again) break;
+    if (error < best.error) best = {std::move(filled), sizing, error};
+    // Fewer than the coarsest triangles cannot be had, however low the aim.
+    const bool coarsest = expected > (1 + promised_tolerance) * aim;
+    if (error <= fill_tolerance || !again || (coarsest && found > n)) break;
+    (found > n ? too_many : too_few) = aim;
     aim *= n / found;
+    if (!(aim > too_few && aim < too_many)) aim = 0.5 * (too_few + too_many);
   }
   return best;
 }
@@ -126,19 +112,20 @@ Sized fill_by_count(SizedMesher& mesher, double guess, double n, const std::func
 Sized fill_by_size(SizedMesher& mesher, double longest, const std::function<void(double)>& refuse,
                    const Progress& progress) {
   Sized sized;
-  sized.edge_length = longest / longest_over_edge_length;
+  sized.sizing.longest = (1 - spare) * longest;
+  double& edge_length = sized.sizing.edge_length;
+  edge_length = longest / longest_over_edge_length;
   double angle = smallest_angles.front() / degrees_per_radian;
   for (int trial = 0; trial < trials; ++trial) {
-    refuse(mesher.count(sized.edge_length));
-    sized.filled = mesher.fill(sized.edge_length, angle, progress);
+    refuse(mesher.count(sized.sizing));
+    sized.filled = mesher.fill(sized.sizing, angle, progress);
     if (!sized.filled.complete) {
       angle = 0;
-      sized.filled = mesher.fill(sized.edge_length, angle, progress);
+      sized.filled = mesher.fill(sized.sizing, angle, progress);
     }
     const double found = longest_edge(sized.filled);
     if (found <= longest) break;
-    // A hair less than what the ratio says, so that rounding does not ask for one more trial.
-    sized.edge_length *= 0.999 * longest / found;
+    edge_length *= (1 - std::ldexp(trial_step, trial)) * longest / found;
   }
   return sized;
 }
@@ -175,7 +162,7 @@ void append(PatchMesh& mesh, const Scene& scene, const Facets& facets, const Mer
 
 }  // namespace
 
-void append_sized(PatchMesh& mesh, const Scene& scene, const Facets& facets,
+void append_sized(PatchMesh& mesh, const Scene& scene, const Facets& facets, const EdgeTable& edges,
                   const std::vector<int>& polygon_of_facet, const MeshingOptions& options,
                   const Progress& progress) {
   const double area = radiating_area(facets);
@@ -189,11 +176,11 @@ void append_sized(PatchMesh& mesh, const Scene& scene, const Facets& facets,
   const auto refuse = [&](double count) { refuse_too_many(scene, count, options.max_patches); };
   refuse(at_least);
 
-  SizedMesher mesher(scene, facets, guess, options.crease_angle);
+  SizedMesher mesher(scene, facets, edges, guess, options.crease_angle);
   const Sized sized = by_size ? fill_by_size(mesher, options.patch_size, refuse, progress)
                               : fill_by_count(mesher, guess, wanted, refuse, progress);
   append(mesh, scene, facets, mesher.plan().merged, polygon_of_facet, sized.filled);
-  mesh.report.edge_length = sized.edge_length;
+  mesh.report.edge_length = sized.sizing.edge_length;
   mesh.report.imprinted_edges = mesher.plan().contact_edges;
 }
 

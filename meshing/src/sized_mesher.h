@@ -21,24 +21,25 @@ struct Filled {
 /// Cuts a scene into triangles of any size asked for.
 class SizedMesher {
  public:
-  /// `guess` is about the edge length that will be asked for [m].
-  SizedMesher(const Scene& scene, const Facets& facets, double guess, double crease_angle);
+  /// `edges` are those of the facets; `guess` is about the edge length that will be asked for [m].
+  SizedMesher(const Scene& scene, const Facets& facets, const EdgeTable& edges, double guess,
+              double crease_angle);
 
-  /// How many patches an edge length gives, about, before grading.
-  double count(double edge_length);
+  /// How many patches a sizing gives, about, before grading.
+  double count(const Sizing& sizing);
 
   /// How many patches a fill gives.
   double count(const Filled& filled) const;
 
   /// Edges are graded where that is needed for angles of `smallest_angle` [radians].
-  Filled fill(double edge_length, double smallest_angle, const Progress& progress);
+  Filled fill(const Sizing& sizing, double smallest_angle, const Progress& progress);
 
   const SurfacePlan& plan() const { return plan_; }
 
  private:
   double sides(int p) const;
   LongestEdgeRefiner halving(std::vector<Vec3>& vertices) const;
-  double count_halved(double longest);
+  std::size_t halvings(const Sizing& sizing);
 
   const Facets& facets_;
   SurfacePlan plan_;

@@ -27,8 +27,10 @@ constexpr double same_direction = 1 - 1e-5;
 /// Finds the regions that are single triangles of a curved surface.
 class CurvedTest {
  public:
-  CurvedTest(const Facets& facets, const MergedPolygons& merged, double longest, double crease_angle)
+  CurvedTest(const Facets& facets, const EdgeTable& edges, const MergedPolygons& merged, double longest,
+             double crease_angle)
       : facets_(facets),
+        edges_(edges),
         merged_(merged),
         longest_(longest),
         smooth_(std::cos(crease_angle / degrees_per_radian)) {}
@@ -38,13 +40,13 @@ class CurvedTest {
     const int facet = merged_.regions[p][0];
     const Vec3 normal = merged_.areas[facet].normalized();
     for (int h = facets_.loops.offsets[facet]; h < facets_.loops.offsets[facet + 1]; ++h) {
-      const Vec3 edge = facets_.vertices[merged_.edges.to(h)] - facets_.vertices[merged_.edges.from(h)];
+      const Vec3 edge = facets_.vertices[edges_.to(h)] - facets_.vertices[edges_.from(h)];
       if (edge.norm() > longest_) return false;
     }
     for (int h = facets_.loops.offsets[facet]; h < facets_.loops.offsets[facet + 1]; ++h) {
-      for (const int g : merged_.edges.uses(h)) {
-        if (merged_.edges.from(g) == merged_.edges.from(h)) continue;
-        const int other = merged_.edges.loop(g);
+      for (const int g : edges_.uses(h)) {
+        if (edges_.from(g) == edges_.from(h)) continue;
+        const int other = edges_.loop(g);
         const double cosine = normal.dot(merged_.areas[other].normalized());
         if (cosine >= smooth_ && cosine < same_direction &&
             is_single_triangle(merged_.regions.region_of_facet[other])) {
@@ -62,13 +64,15 @@ class CurvedTest {
   }
 
   const Facets& facets_;
+  const EdgeTable& edges_;
   const MergedPolygons& merged_;
   double longest_, smooth_;
 };
 
 }  // namespace
 
-SurfacePlan plan_surface(const Scene& scene, const Facets& facets, double edge_length, double crease_angle) {
+SurfacePlan plan_surface(const Scene& scene, const Facets& facets, const EdgeTable& edges, double edge_length,
+                         double crease_angle) {
   const auto may_join = [&](int i, int j) {
     const int a = facets.faces[i];
     const int b = facets.faces[j];
@@ -77,9 +81,9 @@ SurfacePlan plan_surface(const Scene& scene, const Facets& facets, double edge_l
            scene.face_groups[a] == scene.face_groups[b] && facets.front[i] == facets.front[j] &&
            facets.back[i] == facets.back[j];
   };
-  SurfacePlan plan{merge_facets(facets, may_join), {}, {}, {}, {}, {}, {}, 0};
+  SurfacePlan plan{merge_facets(facets, edges, may_join), {}, {}, {}, {}, {}, {}, {}, 0};
   const MergedPolygons& merged = plan.merged;
-  const CurvedTest curved(facets, merged, filled_from * edge_length, crease_angle);
+  const CurvedTest curved(facets, edges, merged, filled_from * edge_length, crease_angle);
 
   std::vector<int> order(merged.regions.size());
   std::iota(order.begin(), order.end(), 0);
@@ -109,6 +113,13 @@ SurfacePlan plan_surface(const Scene& scene, const Facets& facets, double edge_l
     plan.contact_edges += static_cast<int>(list.size());
     for (const auto& [a, b] : list) plan.edges.add(a, b);
   }
+  std::vector<std::vector<int>> edges_of;
+  for (const int p : plan.filled) {
+    std::vector<int>& list = edges_of.emplace_back();
+    for (const auto& [a, b] : merged.polygons.border(p)) list.push_back(plan.edges.find(a, b));
+    for (const auto& [a, b] : plan.creases[p]) list.push_back(plan.edges.find(a, b));
+  }
+  plan.turns = take_turns(plan.filled, edges_of, merged.regions.size(), plan.edges.size());
   for (const auto& triangle : plan.halved) {
     for (int k = 0; k < 3; ++k) {
       const std::array<int, 2> edge = {triangle[k], triangle[(k + 1) % 3]};

@@ -4,6 +4,7 @@
 #include "luxel/scene.h"
 #include "merged_polygons.h"
 #include "shared_edges.h"
+#include "sizing.h"
 
 namespace luxel {
 
@@ -17,11 +18,13 @@ struct SurfacePlan {
   std::vector<int> polygon_of_halved;
   SharedEdges edges;                        ///< of the filled polygons and their creases
   std::vector<std::array<int, 2>> watched;  ///< edges that filled and halved parts share
+  Turns turns;                              ///< of the filled polygons and of `edges`
   int contact_edges = 0;
 };
 
-/// `edge_length` is about the one that will be asked for [m]: triangles of a curved surface that are much
-/// longer are filled, which makes better angles than halving.
-SurfacePlan plan_surface(const Scene& scene, const Facets& facets, double edge_length, double crease_angle);
+/// `edges` are those of the facets; `edge_length` is about the one that will be asked for [m]: triangles of a
+/// curved surface that are much longer are filled, which makes better angles than halving.
+SurfacePlan plan_surface(const Scene& scene, const Facets& facets, const EdgeTable& edges, double edge_length,
+                         double crease_angle);
 
 }  // namespace luxel

@@ -3,10 +3,10 @@
 namespace luxel {
 
 AddedPoints widen_angles([[maybe_unused]] const PlanarDomain& domain,
-                         [[maybe_unused]] const std::vector<char>& fixed, [[maybe_unused]] double smallest,
+                         [[maybe_unused]] const std::vector<double>& least, [[maybe_unused]] double smallest,
                          [[maybe_unused]] std::size_t most) {
 #ifdef LUXEL_WITH_CGAL
-  return widen_delaunay_angles(domain, fixed, smallest, most);
+  return widen_delaunay_angles(domain, least, smallest, most);
 #else
   return {};
 #endif

@@ -73,9 +73,9 @@ TEST(LongestEdge, HalvesUntilNoEdgeIsLonger) {
   // Right isosceles triangles stay such: their longest edge goes 2^(1/2), 1, 2^(-1/2) .. 2^(-7/2) = 0.088 <
   // 0.1, eight halvings of each.
   EXPECT_EQ(refiner.triangles().size(), 512u);
-  EXPECT_EQ(refiner.count(0.1), 512u);
-  EXPECT_EQ(refiner.count(1.1), 4u);
-  EXPECT_EQ(refiner.count(2), 2u);
+  EXPECT_EQ(refiner.count(refiner.halvings(0.1)), 512u);
+  EXPECT_EQ(refiner.count(refiner.halvings(1.1)), 4u);
+  EXPECT_EQ(refiner.count(refiner.halvings(2)), 2u);
 }
 
 TEST(LongestEdge, KeepsThreeSheetsOnOneEdgeTogether) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace luxel {
 namespace {
@@ -12,6 +13,7 @@ namespace {
 
 constexpr double degree = M_PI / 180;
 constexpr std::size_t any_number = 100'000;
+constexpr double whole = std::numeric_limits<double>::infinity();
 
 PlanarDomain loop(const std::vector<Vec2>& points) {
   PlanarDomain domain;
@@ -50,7 +52,7 @@ double smallest_angle(const PlanarDomain& domain) {
 TEST(WidenAngles, HalvesTheEdgesOfAStrip) {
   const PlanarDomain strip = loop({{0, 0}, {10, 0}, {10, 1}, {0, 1}});
 
-  const AddedPoints added = widen_angles(strip, {false, false, false, false}, 25 * degree, any_number);
+  const AddedPoints added = widen_angles(strip, {0, 0, 0, 0}, 25 * degree, any_number);
 
   EXPECT_GE(smallest_angle(with(strip, added)), 25 * degree);
   EXPECT_LT(added.halved.size() + added.inside.size(), 40u);
@@ -59,15 +61,33 @@ TEST(WidenAngles, HalvesTheEdgesOfAStrip) {
 TEST(WidenAngles, LeavesFixedEdgesWhole) {
   const PlanarDomain strip = loop({{0, 0}, {10, 0}, {10, 1}, {0, 1}});
 
-  const AddedPoints added = widen_angles(strip, {true, true, true, true}, 25 * degree, any_number);
+  const AddedPoints added = widen_angles(strip, {whole, whole, whole, whole}, 25 * degree, any_number);
 
   EXPECT_TRUE(added.halved.empty());
+}
+
+TEST(WidenAngles, HalvesNoPartBelowTheLeastLength) {
+  const PlanarDomain strip = loop({{0, 0}, {16, 0}, {16, 1}, {0, 1}});
+  const auto shortest = [&](double least) {
+    const PlanarDomain widened =
+        with(strip, widen_angles(strip, {least, whole, least, whole}, 25 * degree, any_number));
+    double length = 16;
+    for (const auto& [a, b] : widened.borders) {
+      if (widened.points[a].y() != widened.points[b].y()) continue;
+      length = std::min(length, (widened.points[b] - widened.points[a]).norm());
+    }
+    return length;
+  };
+
+  EXPECT_LT(shortest(0), 4);
+  EXPECT_EQ(shortest(4), 4);  // 16 is halved twice
+  EXPECT_EQ(shortest(5), 8);
 }
 
 TEST(WidenAngles, LeavesGoodTrianglesAlone) {
   const PlanarDomain square = loop({{0, 0}, {1, 0}, {1, 1}, {0, 1}});
 
-  const AddedPoints added = widen_angles(square, {false, false, false, false}, 25 * degree, any_number);
+  const AddedPoints added = widen_angles(square, {0, 0, 0, 0}, 25 * degree, any_number);
 
   EXPECT_TRUE(added.halved.empty());
   EXPECT_TRUE(added.inside.empty());
@@ -76,7 +96,7 @@ TEST(WidenAngles, LeavesGoodTrianglesAlone) {
 TEST(WidenAngles, LeavesSharpCornersOfTheDomain) {
   const PlanarDomain wedge = loop({{0, 0}, {1, 0}, {1, std::tan(10 * degree)}});
 
-  const AddedPoints added = widen_angles(wedge, {false, false, false}, 25 * degree, any_number);
+  const AddedPoints added = widen_angles(wedge, {0, 0, 0}, 25 * degree, any_number);
 
   EXPECT_NEAR(smallest_angle(with(wedge, added)), 10 * degree, 1e-12);
 }
@@ -84,7 +104,7 @@ TEST(WidenAngles, LeavesSharpCornersOfTheDomain) {
 TEST(WidenAngles, AddsNoMoreThanAllowed) {
   const PlanarDomain needle = loop({{0, 0}, {1, 0}, {1, 1e-6}, {0, 1e-6}});
 
-  const AddedPoints added = widen_angles(needle, {false, false, false, false}, 25 * degree, 50);
+  const AddedPoints added = widen_angles(needle, {0, 0, 0, 0}, 25 * degree, 50);
 
   EXPECT_EQ(added.halved.size() + added.inside.size(), 50u);
 }
