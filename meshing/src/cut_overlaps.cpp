@@ -244,6 +244,7 @@ void place_corners(const std::vector<ClipCorner*>& corners, const std::vector<in
 
 std::optional<CutFacets> cut_overlaps(const Facets& facets, const Regions& regions,
                                       const std::vector<OverlappingPair>& overlaps) {
+  if (overlaps.empty()) return std::nullopt;
   const Cutter cutter(facets, regions, overlaps);
   CutFacets result;
   std::map<int, Rest> rests;  // of the facets that lose something

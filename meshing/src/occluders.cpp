@@ -72,7 +72,7 @@ FacetOccluders make_occluders(const Facets& facets, const EdgeTable& edges) {
   for (const int r : regions.region_of_facet) result.polygon_of_facet.push_back(polygon_of_region[r]);
   result.overlaps = find_overlapping(facets.vertices, merged);
   occluders.coplanar = name_polygons(result.overlaps, polygon_of_region);
-  result.regions = std::move(merged.regions);
+  if (!result.overlaps.empty()) result.regions = std::move(merged.regions);
   return result;
 }
 

@@ -14,7 +14,7 @@ namespace luxel {
 struct FacetOccluders {
   Occluders occluders;
   std::vector<int> polygon_of_facet;
-  Regions regions;                        ///< coplanar facets, coincident ones each for themselves
+  Regions regions;  ///< coplanar facets, coincident ones each for themselves; none without overlaps
   std::vector<OverlappingPair> overlaps;  ///< regions that lie over each other
 };
 

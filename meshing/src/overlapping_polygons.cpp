@@ -163,11 +163,14 @@ class OverlapTest {
 std::vector<OverlappingPair> find_overlapping(const std::vector<Vec3>& vertices,
                                               const MergedPolygons& merged) {
   const std::vector<Frame>& frames = merged.polygons.frames;
-  OverlapTest test(vertices, merged);
   Box all;
   for (const Vec3& p : vertices) all.extend(p);
   const PlaneGroups groups = group_by_plane(frames, all.center(), all.diagonal().norm());
 
+  const bool irregular =
+      std::ranges::find(merged.polygons.irregular, true) != merged.polygons.irregular.end();
+  if (groups.size() == 0 && !irregular) return {};
+  OverlapTest test(vertices, merged);
   std::vector<Pair> pairs;
   std::vector<Box> boxes, all_boxes;
   if (groups.members.size() > share_worth_all * frames.size()) {
@@ -187,16 +190,19 @@ std::vector<OverlappingPair> find_overlapping(const std::vector<Vec3>& vertices,
   for (int p = 0; p < merged.polygons.size(); ++p) {
     if (merged.polygons.irregular[p] && merged.triangles[p].size() > 1) pairs.emplace_back(p, p);
   }
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
   // by the polygon of more triangles, whose tree then serves all its pairs
+  const auto takes_a_tree = [&](const Pair& pair) {
+    return merged.triangles[pair.first].size() * merged.triangles[pair.second].size() > most_trials;
+  };
   const auto larger = [&](const Pair& pair) {
     return merged.triangles[pair.first].size() < merged.triangles[pair.second].size() ? pair.second
                                                                                       : pair.first;
   };
-  std::sort(pairs.begin(), pairs.end(), [&](const Pair& x, const Pair& y) {
-    const int p = larger(x), q = larger(y);
-    return p != q ? p < q : x < y;
-  });
-  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  const auto trees = std::stable_partition(pairs.begin(), pairs.end(),
+                                           [&](const Pair& pair) { return !takes_a_tree(pair); });
+  std::stable_sort(trees, pairs.end(), [&](const Pair& x, const Pair& y) { return larger(x) < larger(y); });
 
   std::vector<OverlappingPair> found;
   for (const auto& [p, q] : pairs) {
