@@ -16,15 +16,9 @@ namespace luxel::app {
 
 namespace {
 
-// Rays that measure the shares of sky anew in an open scene: so many in any case (under half a second), and
-// one for so many pairs of patches in larger ones.
-constexpr std::int64_t least_sky_rays = 2'000'000, pairs_a_sky_ray = 16;
-
-// What a row is off beyond so many standard errors of its share of sky is not those rays' doing. The standard
-// errors come from a model of quasi-random rays, and some patches gain less from them: in a street of 22,800
-// patches the largest row was 6.6 off while its form factors were right to 1e-5 (by a run ten times as
-// accurate).
-constexpr double sure_errors = 8;
+// Rays that measure anew what is seen of sky and backs, where backs are: so many in any case (under half a
+// second), and one for so many pairs of patches in larger scenes.
+constexpr std::int64_t least_share_rays = 2'000'000, pairs_a_share_ray = 16;
 
 // Where rows of a closed scene turn out worse than asked, all is computed again for half the accuracy, so
 // often.
@@ -40,13 +34,15 @@ void compute(Assembly& assembly, const FormFactorOptions& options, bool raw, con
   OperatorRecord& record = assembly.record;
   record.options = options;
   record.enclosures = planned_enclosures(mesh, {}, progress);
+  FormFactorOptions how = options;
+  how.sky_shares = !record.enclosures.closed;
+  FormFactors factors = form_factors(mesh, how, progress);
   if (!record.enclosures.closed) {
-    // half of the error that rows may have, as far as it costs no more than a third of the run
+    take_sky_shares(record.enclosures, factors.sky_shares, options.accuracy);
     const std::int64_t pairs = static_cast<std::int64_t>(mesh.size()) * mesh.size() / 2;
-    measure_shares(record.enclosures, mesh, RayScene(mesh.occluders), options.accuracy / 2,
-                   std::max(least_sky_rays, pairs / pairs_a_sky_ray), 256, progress);
+    measure_shares(record.enclosures, mesh, RayScene(mesh.occluders), options.accuracy,
+                   std::max(least_share_rays, pairs / pairs_a_share_ray), 256, progress);
   }
-  FormFactors factors = form_factors(mesh, options, progress);
   const auto measure = [&] {
     assembly.rows = row_errors(row_sums(factors.exchange_areas, mesh.areas), mesh.areas, record.enclosures);
   };
@@ -95,7 +91,7 @@ RowErrors row_errors(const std::vector<double>& row_sums, const std::vector<doub
     double& error = errors.of_patch[i];
     if (std::isnan(error)) continue;
     error = std::abs(error + enclosures.open_share[i] + enclosures.back_share[i] - 1);
-    const double certain = std::max(0.0, error - sure_errors * enclosures.share_error[i]);
+    const double certain = std::max(0.0, error - largest_by_chance(enclosures, static_cast<int>(i)));
     errors.max = std::max(errors.max, error);
     errors.certain_max = std::max(errors.certain_max, certain);
     errors.rms += areas[i] * error * error;

@@ -14,11 +14,11 @@ namespace luxel::app {
 
 /// How far the raw row of each patch is from what it should be.
 struct RowErrors {
-  /// N: |s_i + open_i + back_i - 1|, open and back measured by rays of their own.
+  /// N: |s_i + open_i + back_i - 1|, open from form factors of the sky, by rays where backs are seen.
   std::vector<double> of_patch;
   double max = 0;          ///< largest magnitude
   double rms = 0;          ///< area-weighted
-  double certain_max = 0;  ///< largest magnitude beyond three standard errors of the measured shares
+  double certain_max = 0;  ///< largest magnitude beyond what chance may do to the shares
   double certain_rms = 0;  ///< the same, area-weighted root mean square
 };
 

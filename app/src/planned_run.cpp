@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "freed_memory.h"
 #include "memory_plan.h"
 #include "operator_use.h"
 #include "output_files.h"
@@ -56,6 +57,8 @@ PlannedRun::PlannedRun(const SolveCommand& command, std::function<bool(const Ite
 RadiositySolution PlannedRun::run(Assembly& assembly, const Progress& progress, Report& report) {
   watch_ = Stopwatch();
   stage_start_ = {};
+  patches_ = assembly.mesh.size();
+  return_freed_memory(patches_);
   PlannedSolution light;
   switch (chosen_operator(assembly)) {
     case OperatorKind::gather:
@@ -135,6 +138,7 @@ PlanListener PlannedRun::listener(const Progress& progress) {
 }
 
 void PlannedRun::enter(PlanStage stage) {
+  return_freed_memory(patches_);
   const Seconds now = watch_.elapsed();
   (stage_ == PlanStage::assembling ? assembling_
    : stage_ == PlanStage::solving  ? solving_
@@ -154,6 +158,7 @@ void PlannedRun::report_systems(Assembly& assembly, const PlannedSolution& light
   record.options = options_.form_factors;
   record.form_factors = light.form_factors;
   record.closure = light.closure;
+  take_sky_shares(record.enclosures, light.sky_shares, options_.form_factors.accuracy);
   assembly.rows = row_errors(light.row_sums, assembly.mesh.areas, record.enclosures);
   report_operator(assembly, "dense", light.operator_bytes, assembling_, report);
 }

@@ -44,6 +44,7 @@ class PlannedRun {
   PlanOptions options_;
   Plan plan_;
   Stopwatch watch_;
+  int patches_ = 0;
   PlanStage stage_ = PlanStage::assembling;
   Seconds stage_start_, assembling_, solving_, measuring_;
   std::vector<Report::Operator::Candidate> candidates_;

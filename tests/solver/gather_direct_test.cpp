@@ -65,6 +65,35 @@ TEST(DirectIrradiance, OfALampThatLiesMostlyBehindIsTheClosedForm) {
   }
 }
 
+// An upright square on a lamp that passes through its foot, or its middle, and reaches `depth` in front of
+// it.
+TEST(DirectIrradiance, OfALampThatTouchesOrPiercesThePatchIsTheClosedForm) {
+  for (const double depth : {1.0, 0.1, 0.01}) {
+    for (const double below : {0.0, 0.5}) {
+      const PatchMesh mesh = hand_made_mesh(
+          {Vec3(0, 0, -below), Vec3(0, 1, -below), Vec3(0, 1, 1 - below), Vec3(0, 0, 1 - below),
+           Vec3(-2, 0, 0), Vec3(depth, 0, 0), Vec3(depth, 1, 0), Vec3(-2, 1, 0)},
+          {{0, 1, 2, 3}, {4, 5, 6, 7}});
+      const double above = 1 - below;
+
+      // rules that differ by 2e-3 are a tenth of that off; lifting patches off surfaces takes 4e-7 / depth
+      EXPECT_NEAR(light_on_first(mesh, glow(mesh, {1})) / (above * around_a_corner(above, depth)), 1, 5e-4)
+          << depth << ' ' << below;
+    }
+  }
+}
+
+// Of a floor patch only a strip of a hundredth lies in front of the lamp that stands on it.
+TEST(DirectIrradiance, OnAPatchMostlyBehindTheLampIsTheClosedForm) {
+  const double strip = 0.01, height = 0.1;
+  const PatchMesh mesh =
+      hand_made_mesh({Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0), Vec3(0, 1 - strip, 0),
+                      Vec3(0, 1 - strip, height), Vec3(1, 1 - strip, height), Vec3(1, 1 - strip, 0)},
+                     {{0, 1, 2, 3}, {4, 5, 6, 7}});
+
+  EXPECT_NEAR(light_on_first(mesh, glow(mesh, {1})) / (strip * around_a_corner(strip, height)), 1, 5e-4);
+}
+
 TEST(DirectIrradiance, DoesNotDependOnHowTheLampIsCut) {
   const PatchMesh whole = square_below_a_lamp(1), cut = square_below_a_lamp(7);
 
@@ -79,6 +108,24 @@ TEST(DirectIrradiance, IsHalvedByAScreenOverHalfTheLamp) {
 
   // rays to a lamp cut by a straight edge: their net leaves 4096^-0.67 = 0.4 % of the contrast
   EXPECT_NEAR(light_on_first(mesh, glow(mesh, {1}), options), 2 * below_a_corner(1, 1, 1), 4e-3);
+}
+
+// A floor patch that shares an edge with the lamp, cut by screens into cells that see their own part of the
+// lamp only: what arrives comes from close by.
+TEST(DirectIrradiance, OfALampThatTouchesIsRightInPartialShadow) {
+  constexpr int cells = 8, seeds = 32, rays = 1024;
+  const PatchMesh mesh = squares_cut_by_screens(cells);
+  GatherOptions options;
+  options.shadow_rays = rays;
+  const double expected = around_a_corner(cells, cells);
+  double square = 0;
+  for (options.seed = 0; options.seed < seeds; ++options.seed) {
+    square += std::pow(light_on_first(mesh, glow(mesh, {1}), options) / expected - 1, 2) / seeds;
+  }
+
+  // no worse than chance among the rays drawn by the cosine that would meet the lamp
+  const double whole = around_a_corner(1, 1), seen = expected / whole;
+  EXPECT_LT(std::sqrt(square), std::sqrt((1 - seen) / (seen * rays * whole)));
 }
 
 TEST(DirectIrradiance, IsNothingBehindAWall) {

@@ -98,6 +98,27 @@ TEST(GatherOperator, AgreesWithTheDenseOperator) {
   EXPECT_LT(error, 2e-3);
 }
 
+TEST(GatherOperator, StartsRaysEvenlyOnQuadsThatAreNoParallelograms) {
+  // a frustum: its four walls are trapezoids
+  Boxes boxes = Boxes().add({0, 0, 0}, {1, 1, 1}, true);
+  for (Vec3& x : boxes.vertices) {
+    if (x[2] > 0.5) x.head<2>() = (0.4 * x.head<2>().array() + 0.1).matrix();
+  }
+  const PatchMesh mesh = boxes.mesh();
+  const PatchField x = PatchField::Identity(mesh.size(), mesh.size());
+  FormFactorOptions accurate;
+  accurate.accuracy = 1e-6;
+  const RayScene occluders(mesh.occluders);
+  const ClosedOperator dense =
+      close_rows(form_factors(mesh, accurate).exchange_areas, mesh.areas, find_enclosures(mesh, occluders));
+
+  const PatchField error = applied(*gather_of(mesh, 1 << 14), x) - applied(*dense.transport, x);
+
+  // over 40 seeds 0.07 %, on the worst of the 36 pairs 0.11 %: four of these; a parallelogram in the place of
+  // a trapezoid is off by per cents
+  EXPECT_LT(error.cwiseAbs().maxCoeff(), 4.5e-3);
+}
+
 TEST(GatherOperator, ConvergesFasterThanRandomSampling) {
   const PatchMesh mesh = cut_faces(room_with_a_box(), 4);
   const PatchField x = waves(mesh);
@@ -115,12 +136,12 @@ TEST(GatherOperator, LosesTheLightThatLeavesAnOpenBox) {
   open.faces.erase(open.faces.begin() + 1);  // the top
   const PatchMesh mesh = cut_faces(open, 8);
 
-  const auto transport = gather_of(mesh, 1024);
+  const auto transport = gather_of(mesh, 4096);
 
   double escaped = 0;
   for (int i = 0; i < mesh.size(); ++i) escaped += mesh.areas[i] * (1 - transport->row_sums()[i]);
-  // the mouth is convex and sees nothing but the box: what arrives there is its own area; 320 patches with
-  // 1,024 rays leave 0.45 1024^-0.67 / sqrt(320) = 0.03 %
+  // the mouth is convex and sees nothing but the box: what arrives there is its own area; the directions that
+  // sixteen patches share make the error of all that of 20 packets: 0.03 % over 30 seeds
   EXPECT_NEAR(escaped, 1, 1e-3);
 }
 

@@ -76,6 +76,32 @@ inline Boxes room_with_a_box() {
   return Boxes().add({0, 0, 0}, {1, 1, 1}, true).add({0.31, 0.27, 0.22}, {0.63, 0.58, 0.71}, false);
 }
 
+/// A floor square and an upright one with an edge in common, patches 0 and 1, cut by screens into so many
+/// cells: of these each sees only its own part of the other square.
+inline PatchMesh squares_cut_by_screens(int cells) {
+  std::vector<Vec3> vertices{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0),
+                             Vec3(0, 1, 0), Vec3(1, 1, 0), Vec3(1, 1, 1), Vec3(0, 1, 1)};
+  std::vector<std::array<int, 4>> faces{{0, 1, 2, 3}, {4, 5, 6, 7}};
+  for (int k = 1; k < cells; ++k) {
+    const double x = static_cast<double>(k) / cells;
+    const int first = static_cast<int>(vertices.size());
+    vertices.insert(vertices.end(), {Vec3(x, -1, -1), Vec3(x, 2, -1), Vec3(x, 2, 2), Vec3(x, -1, 2)});
+    faces.push_back({first, first + 1, first + 2, first + 3});
+  }
+  return hand_made_mesh(vertices, faces);
+}
+
+/// Form factor from a rectangle 1 x w to one 1 x h at a right angle, the unit edges in common.
+/// Source: Howell, A Catalog of Radiation Heat Transfer Configuration Factors, C-14.
+inline double around_a_corner(double w, double h) {
+  const double ww = w * w, hh = h * h, both = ww + hh, r = std::sqrt(both);
+  const double logs = std::log((1 + ww) * (1 + hh) / (1 + both)) +
+                      ww * std::log(ww * (1 + both) / ((1 + ww) * both)) +
+                      hh * std::log(hh * (1 + both) / ((1 + hh) * both));
+  return (w * std::atan(1 / w) + h * std::atan(1 / h) - r * std::atan(1 / r) + logs / 4) /
+         (std::numbers::pi * w);
+}
+
 /// A sphere of radius 1 seen from inside: rings x 2 rings quads, triangles at the poles, each a polygon.
 inline PatchMesh inward_sphere(int rings) {
   std::vector<Vec3> vertices{{0, 0, 1}};

@@ -2,112 +2,78 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Geometry>
+#include <cmath>
+#include <random>
 
-#include "luxel/dense_operator.h"
-#include "luxel/enclosures.h"
-#include "luxel/form_factors.h"
-#include "luxel/mesh_scene.h"
-#include "luxel/ray_scene.h"
-#include "meshing/scenes.h"
+#include "solver/gather_scenes.h"
 
 namespace luxel {
 namespace {
 
-/// A room with a block on its floor, turned so that no edges coincide, and a second one that runs through it.
-Scene room_with_pierced_block() {
-  SceneMaker maker;
-  maker.room({0, 0, 0}, {2, 2, 1});
-  const std::size_t first = maker.scene().vertices.size();
-  maker.block({0.5, 0.5, 0}, {1, 1, 0.4});
-  const std::size_t last = maker.scene().vertices.size();
-  maker.block({0.8, 0.8, 0.1}, {1.4, 1.2, 0.3});
-  Scene scene = maker.scene();
-  const Vec3 centre(0.75, 0.75, 0);
-  const Eigen::AngleAxisd turn(0.3, Vec3::UnitZ());
-  for (std::size_t v = first; v < last; ++v) scene.vertices[v] = centre + turn * (scene.vertices[v] - centre);
-  return scene;
-}
+using namespace luxel::testing;
 
-TEST(PatchLocator, AnswersForEitherOfTwoSheetsThatOverlap) {
-  const PatchMesh mesh = mesh_scene(room_with_pierced_block(), {.patches = 400});
-  const PatchLocator locator(mesh);
-  const Vec3 under_the_block(0.75, 0.75, 0);
-  int sheets = 0;
-
-  for (std::size_t t = 0; t < mesh.occluders.triangles.size(); ++t) {
-    const auto& [a, b, c] = mesh.occluders.triangles[t];
-    const auto& x = mesh.occluders.vertices;
-    const Vec3 normal = (x[b] - x[a]).cross(x[c] - x[a]);
-    if (std::abs(normal.normalized().z()) < 0.999 || x[a].z() != 0 || x[b].z() != 0 || x[c].z() != 0)
-      continue;
-    ++sheets;
-    const int above = locator.patch_at(static_cast<int>(t), normal.z() > 0, under_the_block);
-    const int below = locator.patch_at(static_cast<int>(t), normal.z() < 0, under_the_block);
-
-    ASSERT_GE(above, 0);
-    ASSERT_GE(below, 0);
-    EXPECT_GT(mesh.normals[above].z(), 0.999);
-    EXPECT_LT(mesh.normals[below].z(), -0.999);
-  }
-  EXPECT_EQ(sheets, 4);
-}
-
-TEST(PatchLocator, KeepsBacksWhereNoSheetOverlaps) {
-  const PatchMesh mesh = mesh_scene(room_with_pierced_block(), {.patches = 400});
-  const PatchLocator locator(mesh);
-  const Vec3 beside_the_block(1.7, 1.7, 0);
-
-  for (std::size_t t = 0; t < mesh.occluders.triangles.size(); ++t) {
-    const int polygon = mesh.occluders.polygons[t];
-    for (int i = 0; i < mesh.size(); ++i) {
-      if (mesh.polygons[i] != polygon || mesh.normals[i].z() < 0.999 || mesh.centroids[i].z() > 1e-9)
-        continue;
-      EXPECT_GE(locator.patch_at(static_cast<int>(t), true, beside_the_block), 0);
-      EXPECT_EQ(locator.patch_at(static_cast<int>(t), false, beside_the_block), -1);
-      break;
+/// A unit square of one polygon: a half left whole, a quarter in strips of 1/256, the rest in 64 x 64 cells.
+PatchMesh patches_of_all_sizes() {
+  PatchMesh mesh = cut_faces(Boxes().add({0, 0, 0}, {1, 1, 1}, true), 1);
+  const PatchMesh room = mesh;
+  mesh.vertices.clear();
+  for (auto* numbers : {&mesh.faces, &mesh.groups, &mesh.materials, &mesh.finishes, &mesh.polygons})
+    numbers->clear();
+  mesh.corners.clear();
+  mesh.normals.clear();
+  mesh.centroids.clear();
+  mesh.areas.clear();
+  const auto add = [&](double x, double y, double width, double height) {
+    const int first = static_cast<int>(mesh.vertices.size());
+    for (const auto& [s, t] : {std::array{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}}) {
+      mesh.vertices.push_back({x + s * width, y + t * height, 0});
     }
-  }
+    mesh.corners.push_back({first, first + 1, first + 2, first + 3});
+    mesh.normals.push_back(Vec3::UnitZ());
+    mesh.centroids.push_back({x + width / 2, y + height / 2, 0});
+    mesh.areas.push_back(width * height);
+    mesh.polygons.push_back(room.polygons[0]);
+    for (auto* numbers : {&mesh.faces, &mesh.groups, &mesh.materials, &mesh.finishes}) numbers->push_back(0);
+  };
+  add(0, 0, 0.5, 1);
+  for (int k = 0; k < 128; ++k) add(0.5, k / 256.0, 0.5, 1 / 256.0);
+  for (int k = 0; k < 64 * 64; ++k) add(0.5 + k % 64 / 128.0, 0.5 + k / 64 / 128.0, 1 / 128.0, 1 / 128.0);
+  return mesh;
 }
 
-TEST(PatchLocator, FindsTheSheetAmongManyOnOnePolygon) {
-  SceneMaker maker;
-  const int across = 9;
-  maker.face({{0, 0, 0}, {across, 0, 0}, {across, across, 0}, {0, across, 0}});
-  for (int i = 0; i < across; ++i) {
-    for (int j = 0; j < across; ++j) maker.block({i + 0.3, j + 0.2, 0}, {i + 0.7, j + 0.9, 0.5});
-  }
-  const PatchMesh mesh = mesh_scene(maker.scene(), {.as_is = true});
+TEST(PatchLocator, FindsPatchesOfAllSizesInOnePolygon) {
+  const PatchMesh mesh = patches_of_all_sizes();
   const PatchLocator locator(mesh);
-  ASSERT_EQ(mesh.occluders.coplanar.size(), 81u);
+  const bool front =
+      mesh.normals[0].dot((mesh.occluders.vertices[mesh.occluders.triangles[0][1]] -
+                           mesh.occluders.vertices[mesh.occluders.triangles[0][0]])
+                              .cross(mesh.occluders.vertices[mesh.occluders.triangles[0][2]] -
+                                     mesh.occluders.vertices[mesh.occluders.triangles[0][0]])) > 0;
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> unit(0, 1);
+  std::vector<RayScene::Hit> hits;
+  std::vector<Vec3> points;
+  for (int k = 0; k < 5000; ++k) {
+    hits.push_back({0, 1, front, 0, 0});
+    points.push_back({unit(random), unit(random), 0});
+  }
+  hits.push_back({});
+  points.push_back(Vec3::Zero());
 
-  for (int i = 0; i < across; ++i) {
-    for (int j = 0; j < across; ++j) {
-      // from below the floor's back is met, and the base of a block lies there
-      const int base = locator.patch_at(0, false, {i + 0.5, j + 0.5, 0});
-      ASSERT_GE(base, 0);
-      EXPECT_NEAR(mesh.centroids[base].x(), i + 0.5, 1e-9);
-      EXPECT_NEAR(mesh.centroids[base].y(), j + 0.55, 1e-9);
-      EXPECT_EQ(locator.patch_at(0, false, {i + 0.1, j + 0.5, 0}), -1);
+  const std::vector<int> found = locator.patches_at(hits, points);
+
+  for (int k = 0; k < 5000; ++k) {
+    const double x = points[k][0], y = points[k][1];
+    int expected = 0;
+    if (x >= 0.5) {
+      expected = y < 0.5 ? 1 + static_cast<int>(y * 256)
+                         : 129 + static_cast<int>((y - 0.5) * 128) * 64 + static_cast<int>((x - 0.5) * 128);
     }
+    ASSERT_EQ(found[k], expected) << x << ' ' << y;
+    ASSERT_EQ(locator.patch_at(0, front, points[k]), expected);
   }
-}
-
-// Row + open + back = 1: what exact form factors see and what rays meet is the same.
-TEST(PatchLocator, LetsRowsAndRaysAgreeInsideOfAPiercedBlock) {
-  const PatchMesh mesh = mesh_scene(room_with_pierced_block(), {.patches = 500});
-  const RayScene occluders(mesh.occluders);
-  constexpr int rays = 4096;
-  const Enclosures enclosures = find_enclosures(mesh, occluders, rays);
-  const FormFactors factors = form_factors(mesh);
-  const std::vector<double> rows = row_sums(factors.exchange_areas, mesh.areas);
-
-  for (int i = 0; i < mesh.size(); ++i) {
-    const double sum = rows[i] + enclosures.open_share[i] + enclosures.back_share[i];
-    // chance may do 4 sigma of independent rays, sqrt(1/4 / 4096) = 0.008; a floor called a back does 0.1 and
-    // more
-    EXPECT_NEAR(sum, 1, 0.032) << i;
-  }
+  EXPECT_EQ(found.back(), -1);
+  EXPECT_EQ(locator.patch_at(0, !front, points[0]), -1);
 }
 
 }  // namespace

@@ -66,6 +66,51 @@ TEST(RayVisibility, AgreesWithClippingWithoutBias) {
   EXPECT_LT(std::abs(bias), 4 * 2e-3 / std::sqrt(static_cast<double>(shares.size())));
 }
 
+// Standard error of a mean of n shares that are 0 or 1 with chance p: at most sqrt(p (1 - p) / n). Nets of
+// two and four points do better.
+TEST(RayVisibility, IsUnbiasedWhereOneRayIsEnough) {
+  const PatchMesh mesh = testing::room_with_turned_boxes(6, 3);
+  const ClusterTree tree = cluster_tree(mesh);
+  const OccluderSet set = occluder_set(mesh, tree);
+  const std::vector<Partial> partial = partial_pairs(mesh, tree, set, 37);
+  const OccluderScene scene(set);
+  constexpr int seeds = 40;
+  for (const double tolerance : {1.0, 0.3}) {
+    std::vector<RayPair> pairs;
+    for (const Partial& p : partial) {
+      pairs.push_back(p.pair);
+      pairs.back().tolerance = tolerance * p.pair.unhidden;
+    }
+    double bias = 0, variance = 0;
+    std::int64_t rays = 0;
+    for (int seed = 0; seed < seeds; ++seed) {
+      const std::vector<RayShare> shares = RayVisibility(tree, scene, seed).visible(pairs);
+      for (std::size_t k = 0; k < shares.size(); ++k) {
+        bias += shares[k].visible - partial[k].visible;
+        variance += partial[k].visible * (1 - partial[k].visible);
+        rays += shares[k].rays;
+      }
+    }
+    EXPECT_LT(std::abs(bias), 4 * std::sqrt(variance)) << tolerance;
+    // some near pairs, whose rays weigh unlike, need twice as many
+    const double planned =
+        static_cast<double>(first_rays(tolerance)) * seeds * static_cast<double>(pairs.size());
+    EXPECT_LE(static_cast<double>(rays), 1.05 * planned) << tolerance;
+  }
+}
+
+TEST(FirstRays, AreAsFewAsTheToleranceAllows) {
+  EXPECT_EQ(first_rays(1), 1);
+  EXPECT_EQ(first_rays(1e-3), most_first_rays);
+  for (double tolerance = 1; tolerance > worst_share_error(most_first_rays); tolerance *= 0.9) {
+    const int rays = first_rays(tolerance);
+    EXPECT_LE(worst_share_error(rays), tolerance);
+    if (rays > 1) {
+      EXPECT_GT(worst_share_error(rays / 2), tolerance);
+    }
+  }
+}
+
 TEST(RayVisibility, DependsOnTheSeedAndThePairAlone) {
   const PatchMesh mesh = testing::room_with_turned_boxes(4, 2);
   const ClusterTree tree = cluster_tree(mesh);

@@ -10,6 +10,7 @@
 #include "luxel/form_factors.h"
 #include "luxel/input_error.h"
 #include "solver/closed_meshes.h"
+#include "solver/hand_made_mesh.h"
 
 // form_factors() where nothing hides anything.
 namespace luxel {
@@ -319,6 +320,32 @@ TEST(Unoccluded, TakesMeshesOfNoAndOnePatch) {
   EXPECT_EQ(form_factors(PatchMesh{}).exchange_areas.size(), 0);
   EXPECT_EQ(
       form_factors(patch_mesh({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2, -1}})).exchange_areas.size(), 1);
+}
+
+// A thin panel has a front and a back in one plane, and the back shares a cluster with a sheet before the
+// panel that looks the same way. Enough else is there that clusters are looked at whole.
+TEST(Unoccluded, NothingGoesBetweenTheTwoSidesOfAPanel) {
+  std::vector<Vec3> vertices{{0, 0, 0},     {1, 0, 0},     {1, 0, 1},     {0, 0, 1},
+                             {0, -0.25, 0}, {1, -0.25, 0}, {1, -0.25, 1}, {0, -0.25, 1}};
+  std::vector<std::array<int, 4>> faces{
+      {0, 1, 2, -1}, {0, 2, 3, -1}, {3, 2, 1, -1}, {3, 1, 0, -1}, {7, 6, 5, 4}};
+  for (int i = 0; i < 20; ++i) {
+    for (int k = 0; k < 20; ++k) {
+      const int first = static_cast<int>(vertices.size());
+      vertices.insert(vertices.end(),
+                      {Vec3(i, 9, k), Vec3(i + 1, 9, k), Vec3(i + 1, 9, k + 1), Vec3(i, 9, k + 1)});
+      faces.push_back({first, first + 1, first + 2, first + 3});
+    }
+  }
+  const PatchMesh mesh = testing::hand_made_mesh(vertices, faces);
+
+  const ExchangeMatrix exchange = at_accuracy(mesh, 1e-4).exchange_areas;
+
+  for (const int front : {0, 1}) {
+    EXPECT_EQ(exchange(front, 2), 0);
+    EXPECT_EQ(exchange(front, 3), 0);
+    EXPECT_GT(exchange(front, 4), 0.1);
+  }
 }
 
 }  // namespace

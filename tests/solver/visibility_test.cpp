@@ -286,6 +286,20 @@ TEST(Visibility, ClosesARoomFullOfLeavesToTheAccuracyAsked) {
   }
 }
 
+// Where little accuracy is asked, a ray or two measure a pair, and hardly any is clipped.
+TEST(Visibility, TakesFewRaysWhereLittleIsAsked) {
+  const PatchMesh boxes = testing::room_with_turned_boxes(10, 5), leaves = room_with_leaves();
+  for (const auto& [mesh, accuracy] : {std::pair(&boxes, 0.1), {&boxes, 0.03}, {&leaves, 0.1}}) {
+    const FormFactors f = factors(*mesh, accuracy);
+
+    EXPECT_LT(f.report.exact_pairs, f.report.facing_pairs / 20);
+    EXPECT_LT(f.report.rays, 3 * f.report.facing_pairs);
+    const RowErrors errors = row_errors(f, *mesh);
+    EXPECT_LE(errors.rms, accuracy);
+    EXPECT_LE(errors.max, 2 * accuracy);
+  }
+}
+
 TEST(Visibility, CutsTheFloorWhereAWallStandsOnIt) {
   // the patch that looks on may be smaller or larger than the floor: either of the two is then the one that
   // is cut

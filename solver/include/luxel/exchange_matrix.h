@@ -29,6 +29,9 @@ class ExchangeMatrix {
   /// Sets G_ij = G_ji = value, i != j.
   void set(int i, int j, double value);
 
+  /// Forgets the patches from `size` on; their entries keep their memory.
+  void keep_first(int size) { size_ = size < size_ ? size : size_; }
+
   /// Row i of the lower triangle: i entries, those of the pairs (i, 0) .. (i, i - 1). Real must be what
   /// precision() says.
   template <class Real>

@@ -23,6 +23,7 @@ struct FormFactorOptions {
   bool group_accuracy = false;
   Precision precision = Precision::float32;  ///< of the stored entries; they are computed in float64
   std::uint64_t seed = 1;                    ///< of the rays' random streams
+  bool sky_shares = false;                   ///< find what of each patch's view the scene leaves free too
   bool keep_idle_occluders = false;  ///< look at those too that can hide nothing: as right, and slower
 };
 
@@ -42,7 +43,11 @@ struct FormFactorReport {
 /// Exchange areas of all pairs with the report of how they came about.
 struct FormFactors {
   ExchangeMatrix exchange_areas;
-  FormFactorReport report;
+  FormFactorReport report;  ///< but for `pairs` with those of the sky, where it was asked for
+  /// N, where asked for: form factors from each patch to the sky, found as those between patches are and as
+  /// accurate, and not from the row sums. The other way round a row is as wrong as its sum and this miss 1 by
+  /// where a patch sees no backs.
+  std::vector<double> sky_shares;
 };
 
 /// Form factors of every pair of patches with visibility, raw: nothing is corrected afterwards. The same bits

@@ -28,13 +28,14 @@ struct OperatorError {
 };
 
 /// Estimates the error that the transport operator F_s of a solution causes, without knowing it. With e = H -
-/// H* and F exact, e = d + F rho e, where d = H - F B is measured: on patches drawn at random from strata of
-/// equal area, the irradiance from the solution's own B is gathered by rays of another seed, in two
-/// independent halves, so that their noise cancels from d^2. F rho e is what the errors' smooth part brings
-/// back; it is carried over by exchange areas between at most 64 parts of the scene. The interval comes from
-/// the jackknife over strata. Boundaries between patches are moved by the map from hits to patches, by less
-/// the more accurate the operator is.
-/// Source: Kish 1965, Survey Sampling (strata); Efron and Stein 1981 (jackknife).
+/// H* and F exact, e = d + F rho e, where d = H - F B is measured: on patches drawn at random from strata,
+/// the irradiance from the solution's own B is gathered by rays of its own, in two independent halves, so
+/// that their noise cancels from d^2. Rays are settled in double precision, and lamps met by rays over the
+/// hemisphere and by points drawn on them, by no code of the operators. F rho e is what the errors' smooth
+/// part brings back; it is carried over by exchange areas between 64 parts of the scene. The interval comes
+/// from the jackknife over strata. Cost: about 0.2 us a ray, 0.3 at a million patches, and 0.1 us a patch.
+/// Source: Kish 1965, Survey Sampling (strata); Efron and Stein 1981 (jackknife); Veach and Guibas 1995
+/// (balance heuristic).
 ///
 /// @param solution  of a converged solve with all bounces; irradiance = F_s B
 /// @param row_sums  N: of the operator; empty: their errors are left 0

@@ -187,6 +187,7 @@ struct PlannedSolution {
   RadiositySolution solution;
   Energy energy;
   std::vector<double> row_sums;    ///< N: raw, before any correction; NaN where nothing was assembled
+  std::vector<double> sky_shares;  ///< N: of the systems that are open; NaN else
   ClosureReport closure;           ///< worst over systems
   FormFactorReport form_factors;   ///< sums over systems
   std::size_t operator_bytes = 0;  ///< held at once, at most

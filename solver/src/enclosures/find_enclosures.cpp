@@ -168,6 +168,7 @@ void measure_shares(Enclosures& enclosures, const PatchMesh& mesh, const RayScen
       const int i = loose[k], asked = std::min(wanted[k], each);
       const Shares shares = measured(look_around(mesh, occluders, locator, i, asked, sets));
       rays += asked;
+      enclosures.share_rays[i] = asked;
       enclosures.open_share[i] = shares.open;
       enclosures.back_share[i] = shares.back;
       const bool unanimous = shares.open + shares.back == 0 || shares.open + shares.back == 1;
@@ -190,6 +191,7 @@ Enclosures find_enclosures(const PatchMesh& mesh, const RayScene& occluders, int
   result.open_share.assign(size, 0.0);
   result.back_share.assign(size, 0.0);
   result.share_error.assign(size, 0.0);
+  result.share_rays.assign(size, 0);
 
   const TriangleSoup soup(mesh.occluders, occluders);
   const Shells shells = find_shells(soup);
@@ -223,10 +225,12 @@ Enclosures find_enclosures(const PatchMesh& mesh, const RayScene& occluders, int
         const int i = doubtful[k];
         Shares shares = measured(look_around(mesh, occluders, locator, i, rays_per_patch, sets));
         rays += rays_per_patch;
+        result.share_rays[i] = rays_per_patch;
         if (share_accuracy > 0 && shares.error > share_accuracy) {
           const int more = rays_needed(rays_per_patch, shares.error / share_accuracy);
           shares = measured(look_around(mesh, occluders, locator, i, more, sets));
           rays += more;
+          result.share_rays[i] = more;
         }
         result.open_share[i] = shares.open;
         result.back_share[i] = shares.back;

@@ -5,30 +5,16 @@
 #include <cmath>
 
 #include "form_factors/assembly.h"
+#include "form_factors/visibility_choice.h"
 
 namespace luxel {
 
 namespace {
 
-// Errors of single pairs have either sign; rows of n pairs, each with A sqrt(G_ij min(A_i, A_j)) times this,
-// err by A times this in the root mean square.
-constexpr double pair_share = 0.3;
-
-// Rays err independently, clipping does not: their share is larger, such that the largest of 10,000 rows
-// (four standard deviations) stays below 2 A.
-constexpr double ray_share = 0.7;
-
 // Where factors between groups are asked for, the pairs of two groups share what their factor may be off: the
 // pair errors e_ij = A sqrt(G_ij G_IJ) times this add up to A G_IJ times this. Clipping's estimates are
 // bounds, those of rays standard errors. Factors below least_factor may err by as much as that one.
 constexpr double group_share = 0.5, group_ray_share = 0.3, least_factor = 1e-3;
-
-// Up to so many occluders between a pair, clipping is always the cheaper way.
-constexpr std::size_t few_occluders = 6;
-
-// Costs [us], measured: a pair clipped against k occluders takes clip_cost + clip_growth k^2, a ray ray_cost;
-// rays for a relative tolerance t are about (ray_need / t)^(1 / 0.7).
-constexpr double clip_cost = 3, clip_growth = 0.3, ray_cost = 0.06, ray_need = 0.4;
 
 // In a block that rays decide as a whole, pairs with a smaller relative tolerance are looked at one by one.
 constexpr double coarse = 0.02;
@@ -42,10 +28,6 @@ constexpr double loosest_sort = 5e-4;
 
 // Pairs that exchange so many times the mean of their block are looked at by themselves.
 constexpr double outstanding = 2;
-
-// Blocks are handed to rays as a whole where so many occluders stand in the way for each patch of a side:
-// where there are fewer, smaller blocks have fewer still.
-constexpr double occluders_a_patch = 0.75;
 
 }  // namespace
 
@@ -107,6 +89,7 @@ void BlockVisibility::descend(int a, int b, const std::vector<Candidate>& candid
     pair(ca.begin, cb.begin, candidates);
     return;
   }
+  if (sample_loose(a, b, candidates)) return;
   if (rays_decide(ca, cb, candidates.size())) {
     sort_by_rays(a, b, candidates);
     return;
@@ -124,12 +107,40 @@ void BlockVisibility::descend(int a, int b, const std::vector<Candidate>& candid
   }
 }
 
-// Where many small occluders stand in the way of a small block, tests of single pairs cost more than rays.
+// Where little is asked of the pairs of a block, a few rays for each cost less than to find out what stands
+// between them. Returns false, and nothing is done, where they do not.
+bool BlockVisibility::sample_loose(int a, int b, const std::vector<Candidate>& candidates) {
+  const Cluster &ca = tree_.clusters[a], &cb = tree_.clusters[b];
+  const int side = std::max(ca.size(), cb.size());
+  if (!scene_.rays || side > SightSorter::largest_side) return false;
+  const double other_way = block_pair_cost(side, candidates.size());
+  loose_.clear();
+  double gained = 0;
+  for (int s = ca.begin; s < ca.end; ++s) {
+    for (int t = cb.begin; t < cb.end; ++t) {
+      const double exchange = unhidden(s, t);
+      if (!(exchange > 0)) continue;
+      const double tolerance = allowed(s, t, exchange).rays;
+      loose_.push_back({s, t, exchange, tolerance});
+      if (const int rays = few_rays(tolerance / exchange)) gained += other_way - few_rays_cost(rays);
+    }
+    if (!(gained > 0)) return false;
+  }
+  for (const RayPair& pair : loose_) {
+    if (few_rays(pair.tolerance / pair.unhidden) == 0) {
+      look_between(pair.s, pair.t, candidates);
+    } else {
+      ++tally_.partial;
+      sampled_.push_back(pair);
+    }
+  }
+  return true;
+}
+
 bool BlockVisibility::rays_decide(const Cluster& a, const Cluster& b, std::size_t candidates) const {
   const int side = std::max(a.size(), b.size());
   const std::size_t few = scene_.options.visibility == Visibility::rays ? 1 : few_occluders;
-  return scene_.sorter && side <= SightSorter::largest_side && candidates > few &&
-         static_cast<double>(candidates) > occluders_a_patch * side;
+  return scene_.sorter && side <= SightSorter::largest_side && rays_sort(side, candidates, few);
 }
 
 double BlockVisibility::unhidden(int s, int t) const {
@@ -224,6 +235,11 @@ void BlockVisibility::sample_or_clip(int s, int t, double exchange, double for_r
     sampled_.push_back({s, t, exchange, for_rays});
     return;
   }
+  look_between(s, t, candidates);
+}
+
+// A pair of a block whose candidates have been found for the block as a whole.
+void BlockVisibility::look_between(int s, int t, const std::vector<Candidate>& candidates) {
   const int a = scene_.leaf[s], b = scene_.leaf[t];
   const ShaftCandidates found = candidates_in_shaft(scene_.ends[a], scene_.ends[b], scene_.set, candidates);
   if (found.hidden) {
@@ -232,16 +248,6 @@ void BlockVisibility::sample_or_clip(int s, int t, double exchange, double for_r
     pair(s, t, found.list);
   }
 }
-
-namespace {
-
-bool rays_are_cheaper(std::size_t occluders, double relative_tolerance) {
-  if (occluders <= few_occluders) return false;
-  const double k = static_cast<double>(occluders);
-  return ray_cost * std::pow(ray_need / relative_tolerance, 1 / 0.7) < clip_cost + clip_growth * k * k;
-}
-
-}  // namespace
 
 void BlockVisibility::pair(int s, int t, const std::vector<Candidate>& candidates) {
   const double exchange = unhidden(s, t);

@@ -61,9 +61,11 @@ class BlockVisibility {
  private:
   void descend(int a, int b, const std::vector<Candidate>& candidates);
   bool rays_decide(const Cluster& a, const Cluster& b, std::size_t candidates) const;
+  bool sample_loose(int a, int b, const std::vector<Candidate>& candidates);
   void sort_by_rays(int a, int b, const std::vector<Candidate>& candidates);
   void sample_or_clip(int s, int t, double exchange, double for_rays,
                       const std::vector<Candidate>& candidates);
+  void look_between(int s, int t, const std::vector<Candidate>& candidates);
   void pair(int s, int t, const std::vector<Candidate>& candidates);
   void sample_all();
   void store(int s, int t, double visible, double error);
@@ -79,7 +81,7 @@ class BlockVisibility {
   ExchangeMatrix& exchange_;
   HiddenPair clip_;
   VisibilityTally tally_;
-  std::vector<RayPair> sampled_;
+  std::vector<RayPair> sampled_, loose_;
 };
 
 }  // namespace luxel

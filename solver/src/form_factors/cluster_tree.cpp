@@ -283,6 +283,7 @@ ClusterTree cluster_tree(const PatchMesh& mesh) {
   ClusterTree tree = Builder(work_patches(mesh, frame)).build();
   tree.centre = frame.centre;
   tree.scale = frame.scale;
+  tree.sky_begin = mesh.size();
   return tree;
 }
 

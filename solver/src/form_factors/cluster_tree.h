@@ -38,6 +38,9 @@ struct ClusterTree {
   int root = 0;
   Vec3 centre;       ///< working = (x - centre) * scale
   double scale = 1;  ///< a power of two [1/m]
+  /// Patches of the mesh before this one are the scene's, whose rows count; the others are its sky, among
+  /// which nothing is exchanged.
+  int sky_begin = 0;
 };
 
 /// Coplanarity, as a share of the scene: two patches lie in one plane when their corners do within this times

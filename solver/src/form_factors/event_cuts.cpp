@@ -49,19 +49,20 @@ class Cutter {
     const double tolerance = thinnest_cut * size_ * slant;
     if (span.low > -tolerance || span.high < tolerance) return;
 
-    next_.clear();
-    for (const Polygon& cell : cells_) {
-      const Halves parts = halves(cell, plane, tolerance);
-      if (parts.front.count == 0 || parts.behind.count == 0 ||
-          !happens(cell, plane, event, to_p, to_q, across) || parts.front.count >= Polygon::capacity - 2 ||
+    // most cells stay as they are, where they are
+    const std::size_t before = cells_.size();
+    for (std::size_t k = 0; k < before; ++k) {
+      const Span within = span_along(cells_[k], plane);
+      if (within.low > -tolerance || within.high < tolerance) continue;
+      if (!happens(cells_[k], plane, event, to_p, to_q, across)) continue;
+      const Halves parts = halves(cells_[k], plane, tolerance);
+      if (parts.front.count == 0 || parts.behind.count == 0 || parts.front.count >= Polygon::capacity - 2 ||
           parts.behind.count >= Polygon::capacity - 2) {
-        next_.push_back(cell);
-      } else {
-        next_.push_back(parts.front);
-        next_.push_back(parts.behind);
+        continue;
       }
+      cells_[k] = parts.front;
+      cells_.push_back(parts.behind);
     }
-    cells_.swap(next_);
   }
 
   std::vector<Polygon> take() { return std::move(cells_); }
@@ -87,7 +88,7 @@ class Cutter {
   Vec3 normal_;
   double size_;
   std::size_t max_cells_;
-  std::vector<Polygon> cells_, next_;
+  std::vector<Polygon> cells_;
 };
 
 bool same(const Vec3& a, const Vec3& b) {

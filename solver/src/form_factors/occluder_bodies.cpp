@@ -186,7 +186,7 @@ std::vector<Occluder> join_bodies(std::vector<OccluderFace>& faces, const PatchM
     }
     if (!whole) {
       for (int f = begin; f < end; ++f) {
-        occluders.push_back({f, f + 1, {}, ordered[f].centre, ordered[f].radius, 0, {}});
+        occluders.push_back({f, f + 1, {}, ordered[f].centre, ordered[f].radius, false, 0, {}});
       }
       continue;
     }

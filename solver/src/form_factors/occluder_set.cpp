@@ -46,10 +46,10 @@ bool splits(const Plane& plane, std::span<const Vec3> points) {
   return false;
 }
 
-// Every vertex that a patch has, once, in working coordinates.
-std::vector<Vec3> corners_of_patches(const PatchMesh& mesh, const WorkingFrame& frame) {
+// Every vertex that one of the first patches has, once, in working coordinates.
+std::vector<Vec3> corners_of_patches(const PatchMesh& mesh, int patches, const WorkingFrame& frame) {
   std::vector<char> used(mesh.vertices.size());
-  for (int p = 0; p < mesh.size(); ++p) {
+  for (int p = 0; p < patches; ++p) {
     for (int k = 0; k < mesh.corner_count(p); ++k) used[mesh.corners[p][k]] = 1;
   }
   std::vector<Vec3> corners;
@@ -80,7 +80,7 @@ OccluderSet occluder_set(const PatchMesh& mesh, const WorkingFrame& frame, bool 
   vertices.reserve(mesh.occluders.vertices.size());
   for (const Vec3& x : mesh.occluders.vertices) vertices.push_back(frame(x));
   std::vector<Vec3> corners;
-  if (!keep_idle) corners = corners_of_patches(mesh, frame);
+  if (!keep_idle) corners = corners_of_patches(mesh, mesh.size(), frame);
 
   OccluderSet set;
   const auto polygons = by_polygon(mesh.occluders);
@@ -101,7 +101,14 @@ OccluderSet occluder_set(const PatchMesh& mesh, const WorkingFrame& frame, bool 
 }
 
 OccluderSet occluder_set(const PatchMesh& mesh, const ClusterTree& tree, bool keep_idle) {
-  return occluder_set(mesh, WorkingFrame{tree.centre, tree.scale}, keep_idle);
+  const WorkingFrame frame{tree.centre, tree.scale};
+  OccluderSet set = occluder_set(mesh, frame, keep_idle);
+  if (keep_idle || tree.sky_begin == mesh.size()) return set;
+  const std::vector<Vec3> corners = corners_of_patches(mesh, tree.sky_begin, frame);
+  for (Occluder& occluder : set.occluders) {
+    occluder.idle = !occluder.body() && !splits(set.faces[occluder.begin].plane, corners);
+  }
+  return set;
 }
 
 }  // namespace luxel

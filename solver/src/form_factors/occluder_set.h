@@ -44,6 +44,7 @@ struct Occluder {
   std::vector<BodyEdge> edges;  ///< of a body, each once; empty for a single face
   Vec3 centre;
   double radius = 0;
+  bool idle = false;           ///< hides patches from the sky alone, for all else is on one side of it
   double inner_radius = 0;     ///< of a sphere around the centre inside a round body
   std::vector<Vec3> vertices;  ///< of a round body
 
@@ -65,6 +66,7 @@ struct OccluderSet {
 /// The occluders of a mesh: its flat polygons in convex pieces of at most eight corners, without those that
 /// have nothing behind or nothing in front of them; closed convex bodies as one. Cost: faces times vertices
 /// at worst, early exits in practice.
+/// A tree with a sky keeps those that hide from the sky alone, marked.
 /// @param keep_idle  also those that have nothing on one side
 OccluderSet occluder_set(const PatchMesh& mesh, const WorkingFrame& frame, bool keep_idle = false);
 OccluderSet occluder_set(const PatchMesh& mesh, const ClusterTree& tree, bool keep_idle = false);

@@ -11,9 +11,11 @@ namespace luxel {
 
 namespace {
 
-// Rays of a pair, powers of two: the first lot, and the most that any pair gets.
-constexpr int first_rays = 16;
+// The most rays of any pair, a power of two.
 constexpr int most_rays = 1 << 16;
+
+// Of all shares the one that rays find worst.
+constexpr double half = 0.5;
 
 // A pair while its rays are under way.
 struct Trial {
@@ -39,6 +41,24 @@ double share_error(double share, double rays) {
   return share_error_constant * std::sqrt(p * (1 - p)) * std::pow(rays, -share_error_order);
 }
 
+double worst_share_error(int rays) {
+  return share_error_constant * half * std::pow(rays, -share_error_order);
+}
+
+int first_rays(double relative_tolerance) {
+  static const std::vector<double> errors = [] {
+    std::vector<double> of;
+    for (int rays = 1; rays < most_first_rays; rays *= 2) of.push_back(worst_share_error(rays));
+    return of;
+  }();
+  int rays = 1;
+  for (const double error : errors) {
+    if (error <= relative_tolerance) break;
+    rays *= 2;
+  }
+  return rays;
+}
+
 RayVisibility::RayVisibility(const ClusterTree& tree, const OccluderScene& scene, std::uint64_t seed)
     : tree_(tree), scene_(scene), seed_(seed) {}
 
@@ -55,7 +75,7 @@ std::vector<RayShare> RayVisibility::visible(std::span<const RayPair> pairs) con
       a = &kept.a;
       b = &kept.b;
     }
-    trials.push_back({SightLines(*a, *b, seed_), 0, first_rays});
+    trials.push_back({SightLines(*a, *b, seed_), 0, first_rays(pairs[k].tolerance / pairs[k].unhidden)});
   }
   SightPacket packet(scene_, [&](std::size_t k, double weight, bool arrives) {
     Trial& trial = trials[k];

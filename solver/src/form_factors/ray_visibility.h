@@ -36,10 +36,20 @@ constexpr double share_prior = 0.5;
 /// part.
 double share_error(double share, double rays);
 
+/// Rays that a pair gets before any has been looked at: a power of two, as many as reach the tolerance,
+/// relative to the pair, whatever share of it is in sight, or most_first_rays. Where fewer suffice, their
+/// number does not depend on what they find: shares are unbiased, and errors of pairs have either sign.
+int first_rays(double relative_tolerance);
+constexpr int most_first_rays = 16;
+
+/// Standard error of so many rays where half of a pair is in sight, the largest there is.
+double worst_share_error(int rays);
+
 /// Visibility of pairs by rays between quasi-random points of both patches, weighted by the kernel of the
 /// exchange area. Rays go in packets of sixteen, pair after pair; pairs whose error is above their tolerance
-/// get twice as many rays, up to a limit. Every pair has a point set of its own, from the seed and its two
-/// patches, so that the result does not depend on how pairs are grouped. Safe from many threads.
+/// after their first rays get twice as many, up to a limit. Every pair has a point set of its own, from the
+/// seed and its two patches, so that the result does not depend on how pairs are grouped. Safe from many
+/// threads.
 class RayVisibility {
  public:
   RayVisibility(const ClusterTree& tree, const OccluderScene& scene, std::uint64_t seed);

@@ -118,7 +118,8 @@ class Assembly {
         add(tally, b.size(), writer_.write(tile, i, i + 1, b.begin, b.end),
             RuleChoice::error(level, nearest));
       } else {
-        for (int j = b.begin; j < b.end; ++j) fill_pair(i, j, true, tally);
+        // the back of a sheet lies in the plane of its front: not behind, and not facing either
+        for (int j = b.begin; j < b.end; ++j) fill_if_facing(i, j, tally);
       }
     }
   }
@@ -126,15 +127,17 @@ class Assembly {
   // A small block that may hold pairs which see only part of each other, or nothing.
   void fill_straddling(const Cluster& a, const Cluster& b, Tally& tally) const {
     for (int i = a.begin; i < a.end; ++i) {
-      for (int j = b.begin; j < b.end; ++j) {
-        const WorkPatch &p = tree_.patches[i], &q = tree_.patches[j];
-        const Span over_p = span_along(q.outline, p.plane);
-        if (over_p.high <= plane_tolerance) continue;
-        const Span over_q = span_along(p.outline, q.plane);
-        if (over_q.high <= plane_tolerance) continue;
-        fill_pair(i, j, over_p.low >= -plane_tolerance && over_q.low >= -plane_tolerance, tally);
-      }
+      for (int j = b.begin; j < b.end; ++j) fill_if_facing(i, j, tally);
     }
+  }
+
+  void fill_if_facing(int i, int j, Tally& tally) const {
+    const WorkPatch &p = tree_.patches[i], &q = tree_.patches[j];
+    const Span over_p = span_along(q.outline, p.plane);
+    if (over_p.high <= plane_tolerance) return;
+    const Span over_q = span_along(p.outline, q.plane);
+    if (over_q.high <= plane_tolerance) return;
+    fill_pair(i, j, over_p.low >= -plane_tolerance && over_q.low >= -plane_tolerance, tally);
   }
 
   int pair_level(const WorkPatch& p, const WorkPatch& q, double apart) const {
@@ -198,7 +201,9 @@ void fill_unoccluded(const ClusterTree& tree, double accuracy, ExchangeMatrix& e
     report.facing_pairs += tally.facing;
     error += 2 * tally.error;
   }
-  for (const WorkPatch& patch : tree.patches) total += metres_squared(tree, patch.area);
+  for (const WorkPatch& patch : tree.patches) {
+    if (patch.patch < tree.sky_begin) total += metres_squared(tree, patch.area);
+  }
   if (total > 0) report.estimated_error = error / total;
 }
 

@@ -27,7 +27,14 @@ constexpr std::size_t reports = 200;
 class VisibilityPass {
  public:
   VisibilityPass(const BlockedScene& scene, ExchangeMatrix& exchange_areas)
-      : scene_(scene), tree_(scene.tree), exchange_(exchange_areas) {}
+      : scene_(scene), tree_(scene.tree), exchange_(exchange_areas), in_sky_(tree_.clusters.size()) {
+    // parents come before their children
+    for (std::size_t k = tree_.clusters.size(); k-- > 0;) {
+      const Cluster& cluster = tree_.clusters[k];
+      in_sky_[k] = cluster.leaf() ? tree_.patches[cluster.begin].patch >= tree_.sky_begin
+                                  : in_sky_[cluster.left] || in_sky_[cluster.right];
+    }
+  }
 
   VisibilityTally run(const Progress& progress) {
     std::vector<Block> blocks;
@@ -81,6 +88,9 @@ class VisibilityPass {
     }
     if (!may_face(ca, cb)) return;
     ShaftCandidates found = candidates_in_shaft(scene_.ends[a], scene_.ends[b], scene_.set, inherited);
+    if (!in_sky_[a] && !in_sky_[b]) {
+      std::erase_if(found.list, [&](const Candidate& c) { return scene_.set.occluders[c.occluder].idle; });
+    }
     if (found.hidden) {
       hide_block(tree_, a, b, exchange_, tally);
     } else if (!found.list.empty()) {
@@ -99,6 +109,7 @@ class VisibilityPass {
   const BlockedScene& scene_;
   const ClusterTree& tree_;
   ExchangeMatrix& exchange_;
+  std::vector<char> in_sky_;  // of each cluster, whether it holds patches of the sky
   std::int64_t limit_ = block_entries;
 };
 
@@ -117,7 +128,9 @@ void subtract_hidden(const PatchMesh& mesh, const ClusterTree& tree, const FormF
   report.sampled_pairs = tally.sampled;
   report.rays = tally.rays;
   double total = 0;
-  for (const WorkPatch& patch : tree.patches) total += patch.area;
+  for (const WorkPatch& patch : tree.patches) {
+    if (patch.patch < tree.sky_begin) total += patch.area;
+  }
   // rows err by sqrt(sum_j e_ij^2) / A_i; their mean square is weighted by area
   report.estimated_error =
       std::sqrt(report.estimated_error * report.estimated_error + tally.squared_error / total);

@@ -8,6 +8,7 @@ PatchField neumann(const RadiositySystem& system, PatchField radiosity, Iteratio
   if (!watch.start(residual, radiosity)) return radiosity;
   do {
     radiosity += residual;  // E + K B = B + r
+    residual.resize(0, 0);  // of a million patches no two at a time
     residual = system.residual(radiosity);
   } while (watch.next(residual, radiosity));
   return radiosity;
@@ -19,6 +20,7 @@ PatchField neumann_bounces(const RadiositySystem& system, int bounces, Iteration
   watch.start(residual, radiosity);
   while (watch.report().iterations < bounces && watch.report().stopped != Stopped::caller) {
     radiosity += residual;
+    residual.resize(0, 0);
     residual = system.residual(radiosity);
     watch.next(residual, radiosity);
   }

@@ -9,6 +9,16 @@ namespace {
 // Hits looked at: a thousand for each of 64 x 64 pairs of parts.
 constexpr std::size_t enough_hits = 1 << 22;
 
+/// @param exchange  A_I F_IJ
+void set_exchange(Eigen::MatrixXd exchange, CoarseExchange& coarse) {
+  const double all = exchange.norm();
+  coarse.reciprocity_error = all > 0 ? (exchange - exchange.transpose()).norm() / all : 0;
+  coarse.form_factors = std::move(exchange);
+  for (int i = 0; i < static_cast<int>(coarse.areas.size()); ++i) {
+    if (coarse.areas[i] > 0) coarse.form_factors.row(i) /= coarse.areas[i];
+  }
+}
+
 }  // namespace
 
 CoarseExchange coarse_exchange(const GatherOperator& transport, const std::vector<std::int32_t>& part,
@@ -31,12 +41,23 @@ CoarseExchange coarse_exchange(const GatherOperator& transport, const std::vecto
       }
     }
   }
-  const double all = exchange.norm();
-  coarse.reciprocity_error = all > 0 ? (exchange - exchange.transpose()).norm() / all : 0;
-  coarse.form_factors = std::move(exchange);
-  for (int i = 0; i < parts; ++i) {
-    if (coarse.areas[i] > 0) coarse.form_factors.row(i) /= coarse.areas[i];
+  set_exchange(std::move(exchange), coarse);
+  return coarse;
+}
+
+CoarseExchange coarse_exchange(const std::vector<StratumDefects>& defects,
+                               const std::vector<std::int32_t>& part, int parts) {
+  CoarseExchange coarse;
+  coarse.areas.assign(parts, 0.0);
+  Eigen::MatrixXd exchange = Eigen::MatrixXd::Zero(parts, parts);
+  for (const StratumDefects& of_stratum : defects) {
+    for (const Defect& defect : of_stratum) {
+      const std::int32_t own = part[defect.patch];
+      coarse.areas[own] += defect.weight;
+      for (int p = 0; p < parts; ++p) exchange(own, p) += defect.weight * defect.met[p] / defect.looked;
+    }
   }
+  set_exchange(std::move(exchange), coarse);
   return coarse;
 }
 

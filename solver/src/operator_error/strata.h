@@ -8,23 +8,23 @@
 
 namespace luxel {
 
-/// The surface in pieces of equal area, each of neighbours: cut from the order of the packets.
+/// The surface along a curve, cut into pieces of equal measure, area or another, each of neighbours: as the
+/// packets follow one another.
 class Strata {
  public:
-  /// @param areas  N [m2]
-  Strata(std::span<const GatherOperator::Packet> packets, const std::vector<double>& areas, int count);
+  /// @param measures  N, of each patch, > 0
+  Strata(std::span<const GatherOperator::Packet> packets, const std::vector<double>& measures);
 
-  int count() const { return count_; }
-  /// A patch of a stratum, drawn by area.
-  int draw(int stratum, std::uint64_t seed) const;
-  /// For each patch its stratum.
-  const std::vector<std::int32_t>& of_patch() const { return of_patch_; }
+  /// The patches, neighbours together.
+  std::span<const int> order() const { return order_; }
+  /// A patch of one of `count` strata, drawn by measure.
+  int draw(int stratum, int count, std::uint64_t seed) const;
+  /// For each patch the one of `count` strata that its middle lies in.
+  std::vector<std::int32_t> of_patch(int count) const;
 
  private:
-  int count_;
-  std::vector<int> order_;     // patches
-  std::vector<double> up_to_;  // area of order_[0] .. order_[k]
-  std::vector<std::int32_t> of_patch_;
+  std::vector<int> order_;
+  std::vector<double> up_to_;  // measure of order_[0] .. order_[k]
 };
 
 }  // namespace luxel

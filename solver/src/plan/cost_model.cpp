@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "form_factors/visibility_choice.h"
+
 namespace luxel {
 
 namespace {
@@ -30,15 +32,28 @@ constexpr double start = 0.02;
 constexpr double mesh_step = 3e-6;
 
 // Rays of find_enclosures().
-constexpr double enclosure_ray = 2e-7;
+constexpr double enclosure_ray = 3e-7;
 
 // A facing pair at accuracy 1e-3, and how much more each digit costs.
 constexpr double facing_pair = 12e-9;
 constexpr double pair_digit = 1.3;
 
-// A pair that is clipped, and one that rays decide.
-constexpr double clipped_pair = 2.5e-6;
-constexpr double crowded_pair = 1.8e-6;
+// A pair that is clipped, for each face that hides from both sides, and for each that is seen of a convex
+// body.
+constexpr double clipped_pair = 1e-6, clipped_flat = 0.33e-6, clipped_body_face = 0.8e-6;
+
+// A pair that rays decide, and one of a block that they sort, those in full sight counted.
+constexpr double crowded_pair = 1.8e-6, sorted_pair = 1e-6;
+
+// A pair of a patch and a part of the sky at accuracy 3e-2, growing as accuracy^-1/2 up to what clipping
+// takes.
+constexpr double sky_pair = 0.9e-6, clipped_sky_pair = 2.8e-6, sky_accuracy = 0.03;
+
+// The same once it is known how many pairs and rays there were.
+constexpr double any_clipped_pair = 2e-6, any_sampled_pair = 0.05e-6, any_ray = 0.06e-6;
+
+// How much dearer rays that measure single pairs become with each doubling of the faces.
+constexpr double few_faces = 64, dearer_a_doubling = 0.2;
 
 // Passes over the matrix that close_rows() takes.
 constexpr double closure_passes = 40;
@@ -54,15 +69,18 @@ constexpr double patch_bytes = 2500;
 constexpr double gather_ray = 30e-9, ray_doubling = 2e-9;
 constexpr double few_triangles = 64, cached_triangles = 1e5, beyond_cache = 0.5;
 
-// A ray of the error bar has no neighbours to travel with.
-constexpr double probe_ray = 2;
+// A ray of the error bar goes alone, in double precision, and ends in memory of its own; so many times a ray
+// of a gather, and what a patch costs it besides: places and strata.
+constexpr double probe_ray = 7, probe_patch = 1.2e-7;
+constexpr double cached_patches = 3e4, probe_beyond_cache = 0.1;
 
 // A patch besides its rays: packets, pictures, direct light, iteration.
 constexpr double gather_patch = 4e-6;
 
 // Clusters and passes over them [s a patch], and pairs of clusters [s, bytes; times root of patches times
-// accuracy^-order].
+// accuracy^-order]; or, once their number is known, all by what they hold [s a byte] and ask [s a ray].
 constexpr double cluster_patch = 1.3e-5, cluster_pairs = 2.8e-5, cluster_order = 1.07;
+constexpr double block_byte = 1.5e-8, block_ray = 5e-8;
 constexpr double cluster_patch_bytes = 430, cluster_pair_bytes = 1900;
 
 // Mesh, fields and pictures of a gather [a patch], and its ray scene [a triangle].
@@ -126,8 +144,29 @@ double assembly_seconds(double facing_pairs, double accuracy) {
   return facing_pairs * facing_pair * std::pow(pair_digit, std::max(0.0, -3 - std::log10(accuracy)));
 }
 
-double visibility_seconds(double clipped_pairs, double crowded_pairs) {
-  return clipped_pairs * clipped_pair + crowded_pairs * crowded_pair;
+double clipped_pair_seconds(double flat_faces, double body_faces) {
+  return clipped_pair + clipped_flat * flat_faces + clipped_body_face * body_faces;
+}
+
+double crowded_pair_seconds() {
+  return crowded_pair;
+}
+
+double sorted_pair_seconds() {
+  return sorted_pair;
+}
+
+double few_rays_seconds(int rays, double faces) {
+  const double doublings = std::log2(std::max(1.0, faces / few_faces));
+  return 1e-6 * few_rays_cost(rays) * (1 + dearer_a_doubling * doublings);
+}
+
+double sky_seconds(double pairs, double accuracy) {
+  return pairs * std::min(sky_pair * std::sqrt(sky_accuracy / accuracy), clipped_sky_pair);
+}
+
+double visibility_seconds(double clipped_pairs, double sampled_pairs, double rays) {
+  return any_clipped_pair * clipped_pairs + any_sampled_pair * sampled_pairs + any_ray * rays;
 }
 
 double closure_seconds(double patches, Precision precision, bool closed) {
@@ -140,8 +179,13 @@ double gather_ray_seconds(double triangles) {
          std::pow(std::max(1.0, triangles / cached_triangles), beyond_cache);
 }
 
-double probe_seconds(double triangles) {
-  return probe_ray * gather_ray_seconds(triangles);
+double probe_ray_seconds(double patches, double triangles) {
+  return probe_ray * gather_ray_seconds(triangles) *
+         std::pow(std::max(1.0, patches / cached_patches), probe_beyond_cache);
+}
+
+double probes_seconds(double patches) {
+  return probe_patch * patches;
 }
 
 double gather_seconds(double patches, double rays_a_patch, double triangles) {
@@ -150,6 +194,10 @@ double gather_seconds(double patches, double rays_a_patch, double triangles) {
 
 double hierarchical_seconds(double patches, double accuracy) {
   return patches * cluster_patch + cluster_pairs * std::sqrt(patches) * std::pow(accuracy, -cluster_order);
+}
+
+double block_seconds(double bytes, double rays) {
+  return block_byte * bytes + block_ray * rays;
 }
 
 double hierarchical_bytes(double patches, double accuracy) {

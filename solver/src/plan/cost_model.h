@@ -41,22 +41,40 @@ double enclosure_seconds(double rays);
 /// Form factors of so many facing pairs, as if nothing hid them.
 double assembly_seconds(double facing_pairs, double accuracy);
 
-/// Partly hidden pairs have more occluders between them than this when rays decide; else they are clipped.
-inline constexpr std::size_t few_occluders = 6;
-double visibility_seconds(double clipped_pairs, double crowded_pairs);
+/// A pair that is clipped by so many flat faces and faces of convex bodies in sight.
+double clipped_pair_seconds(double flat_faces, double body_faces);
+
+/// A pair that rays decide because many occluders stand between, and one of a block that rays sort as a
+/// whole.
+double crowded_pair_seconds();
+double sorted_pair_seconds();
+
+/// A pair that so many rays measure, without more ado, among so many faces.
+double few_rays_seconds(int rays, double faces);
+
+/// Pairs of a patch and a part of the sky.
+double sky_seconds(double pairs, double accuracy);
+
+/// Pairs that were clipped or measured by rays, once their numbers are known.
+double visibility_seconds(double clipped_pairs, double sampled_pairs, double rays);
 
 /// Row sums, and scaling them in a closed enclosure.
 double closure_seconds(double patches, Precision precision, bool closed);
 
-/// A ray of a gather, with what is done with it, against so many triangles; and one of the error bar's.
+/// A ray of a gather, with what is done with it, against so many triangles.
 double gather_ray_seconds(double triangles);
-double probe_seconds(double triangles);
+
+/// The error bar: a ray of its probes, and what it does before the first.
+double probe_ray_seconds(double patches, double triangles);
+double probes_seconds(double patches);
 
 /// Everything that a gather does.
 double gather_seconds(double patches, double rays_a_patch, double triangles);
 
 /// Everything that a hierarchical operator does, in a scene of few polygons.
 double hierarchical_seconds(double patches, double accuracy);
+/// Assembling and solving a hierarchical operator of so many bytes that took so many rays.
+double block_seconds(double bytes, double rays);
 
 // Memory [bytes].
 double hierarchical_bytes(double patches, double accuracy);

@@ -143,6 +143,7 @@ Enclosures one_closed_enclosure(int patches) {
   one.open_share.assign(patches, 0.0);
   one.back_share.assign(patches, 0.0);
   one.share_error.assign(patches, 0.0);
+  one.share_rays.assign(patches, 0);
   return one;
 }
 

@@ -53,6 +53,7 @@ Enclosures gathered_enclosures(const GatherOperator& stored, const std::vector<d
   Enclosures result;
   result.enclosure.resize(size);
   result.back_share.assign(size, 0.0);
+  result.share_rays.assign(size, static_cast<int>(rays));
   for (int i = 0; i < size; ++i) {
     const int first = sets.root(i);
     if (first == i) {

@@ -6,10 +6,10 @@
 #include "luxel/input_error.h"
 #include "luxel/plan.h"
 #include "operator_error/coarse_exchange.h"
-#include "operator_error/probed_error.h"
 #include "operator_error/strata.h"
 #include "plan/cost_model.h"
 #include "plan/decisions.h"
+#include "plan/error_bar.h"
 #include "plan/gathered_enclosures.h"
 #include "plan/solved_channels.h"
 #include "transport/gather/gathered_light.h"
@@ -20,10 +20,6 @@ namespace {
 
 // Where nothing emits, rays are cast only to tell the enclosures.
 constexpr int least_rays = 16;
-
-// Rays that the error bar may take, as a share of those of the gather: below a fifth of the run with what
-// strata and exchange cost.
-constexpr double error_bar_share = 0.12;
 
 // Parts of the scene between which reciprocity is looked at.
 constexpr int reciprocity_parts = 64;
@@ -36,8 +32,8 @@ std::vector<char> lossless_channels(const PatchField& rho) {
 }
 
 double reciprocity_error(const GatherOperator& stored) {
-  const Strata strata(stored.packets(), {stored.areas().begin(), stored.areas().end()}, reciprocity_parts);
-  return coarse_exchange(stored, strata.of_patch(), reciprocity_parts).reciprocity_error;
+  const Strata strata(stored.packets(), {stored.areas().begin(), stored.areas().end()});
+  return coarse_exchange(stored, strata.of_patch(reciprocity_parts), reciprocity_parts).reciprocity_error;
 }
 
 Energy energy_of(const PatchMesh& mesh, const PatchField& rho, const PatchField& emitted,
@@ -127,17 +123,19 @@ GatheredRun run_gathered(const PatchMesh& mesh, const PlanOptions& options, cons
   planned.operator_bytes = run.gather.bytes;
   planned.rays = run.gather.rays + run.gather.shadow_rays;
   planned.reciprocity_error = reciprocity_error(*light.stored);
+  light.stored.reset();
+  light.rays.reset();
 
   if (options.error_bar && !run.gather.partial) {
     enter(PlanStage::measuring);
-    OperatorErrorOptions probing;
-    probing.accuracy = options.form_factors.accuracy;
-    probing.seed = options.form_factors.seed;
-    probing.most_rays = error_bar_share * static_cast<double>(planned.rays);
+    const double triangles = static_cast<double>(mesh.occluders.triangles.size());
+    const double seconds =
+        gather_seconds(mesh.size(), static_cast<double>(planned.rays) / mesh.size(), triangles);
+    const OperatorErrorOptions probing = error_bar_options(mesh, options, seconds);
     try {
       planned.operator_error =
-          probed_error(mesh, occluders, *light.rays, *light.stored, rho_solved, emitted_solved,
-                       light.solution.light, planned.row_sums, probing, listener.progress);
+          operator_error(mesh, occluders, rho_solved, emitted_solved, light.solution.light, planned.row_sums,
+                         probing, listener.progress);
     } catch (const Cancelled&) {
       if (!options.keep_partial) throw;
     }

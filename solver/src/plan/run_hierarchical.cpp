@@ -6,6 +6,7 @@
 #include "luxel/plan.h"
 #include "plan/cost_model.h"
 #include "plan/decisions.h"
+#include "plan/error_bar.h"
 #include "plan/solved_channels.h"
 
 namespace luxel {
@@ -15,9 +16,6 @@ namespace {
 // Rays of all patches together that tell enclosures which the surfaces do not prove, and those of each patch.
 constexpr double enclosure_rays = 4e6;
 constexpr int least_rays = 16, most_rays = 256;
-
-// Of the time that assembling takes: what the error bar may take.
-constexpr double error_bar_share = 0.1;
 
 HierarchicalOptions hierarchical_options(const PlanOptions& options) {
   HierarchicalOptions hierarchical;
@@ -69,12 +67,9 @@ HierarchicalRun run_hierarchical(const PatchMesh& mesh, const PlanOptions& optio
   const bool stopped = planned.solution.report.stopped == Stopped::caller;
   if (options.error_bar && !stopped && (emitted.array() > 0).any()) {
     enter(PlanStage::measuring);
-    OperatorErrorOptions probing;
-    probing.accuracy = options.form_factors.accuracy;
-    probing.seed = options.form_factors.seed;
-    const double triangles = static_cast<double>(mesh.occluders.triangles.size());
-    probing.most_rays =
-        error_bar_share * hierarchical_seconds(mesh.size(), probing.accuracy) / probe_seconds(triangles);
+    const double seconds =
+        block_seconds(static_cast<double>(run.hierarchical.bytes), static_cast<double>(planned.rays));
+    const OperatorErrorOptions probing = error_bar_options(mesh, options, seconds);
     try {
       planned.operator_error =
           operator_error(mesh, occluders, rho, emitted, planned.solution, {}, probing, listener.progress);

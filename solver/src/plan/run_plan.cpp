@@ -7,6 +7,7 @@
 
 #include "luxel/plan.h"
 #include "plan/cost_model.h"
+#include "plan/error_bar.h"
 #include "plan/merged_report.h"
 #include "plan/solved_channels.h"
 
@@ -30,12 +31,10 @@ Enclosures part_of(const Enclosures& all, const std::vector<int>& patches) {
     part.open_share.push_back(all.open_share[i]);
     part.back_share.push_back(all.back_share[i]);
     part.share_error.push_back(all.share_error[i]);
+    if (!all.share_rays.empty()) part.share_rays.push_back(all.share_rays[i]);
   }
   return part;
 }
-
-// Of the time that assembling takes: what the error bar may take.
-constexpr double error_bar_share = 0.1;
 
 class Run {
  public:
@@ -53,19 +52,24 @@ class Run {
     result_.energy.emitted = result_.energy.absorbed = result_.energy.escaped =
         Eigen::RowVectorXd::Zero(emission_.cols());
     result_.row_sums.assign(mesh.size(), std::numeric_limits<double>::quiet_NaN());
+    result_.sky_shares = result_.row_sums;
   }
 
   /// Assembles and closes one system.
   std::unique_ptr<DenseOperator> assemble(const SystemPlan& system, const Enclosures& enclosures) {
     enter(PlanStage::assembling);
     PatchMesh part = sub_mesh(mesh_, system.patches, system.closed);
-    if (system.hiding_polygons == 0) part.occluders.triangles.clear();
+    if (system.hiding_polygons == 0 && system.closed) part.occluders.triangles.clear();
     FormFactorOptions how = options_.form_factors;
     how.precision = system.precision;
     how.keep_idle_occluders = plan_.keep_idle_occluders;
+    how.sky_shares = !system.closed;
     FormFactors factors = form_factors(part, how, listener_.progress);
     const std::vector<double> raw = row_sums(factors.exchange_areas, part.areas);
     for (std::size_t k = 0; k < raw.size(); ++k) result_.row_sums[system.patches[k]] = raw[k];
+    for (std::size_t k = 0; k < factors.sky_shares.size(); ++k) {
+      result_.sky_shares[system.patches[k]] = factors.sky_shares[k];
+    }
     add(result_.form_factors, factors.report);
     const double limit = most_correction * how.accuracy;
     ClosedOperator closed = close_rows(std::move(factors.exchange_areas), part.areas,
@@ -122,21 +126,16 @@ class Run {
   }
 
  private:
-  /// The operator's error, for at most a tenth of what assembling it took.
+  /// The operator's error.
   void measure() {
     if ((emission_.array() == 0).all()) return;
     enter(PlanStage::measuring);
     const FormFactorReport& done = result_.form_factors;
-    const auto clipped = static_cast<double>(done.exact_pairs),
-               sampled = static_cast<double>(done.sampled_pairs);
     const double seconds =
         assembly_seconds(static_cast<double>(done.facing_pairs), options_.form_factors.accuracy) +
-        visibility_seconds(clipped, sampled);
-    OperatorErrorOptions probing;
-    probing.accuracy = options_.form_factors.accuracy;
-    probing.seed = options_.form_factors.seed;
-    probing.most_rays =
-        error_bar_share * seconds / probe_seconds(static_cast<double>(mesh_.occluders.triangles.size()));
+        visibility_seconds(static_cast<double>(done.exact_pairs), static_cast<double>(done.sampled_pairs),
+                           static_cast<double>(done.rays));
+    const OperatorErrorOptions probing = error_bar_options(mesh_, options_, seconds);
     result_.operator_error = operator_error(mesh_, RayScene(mesh_.occluders), reflectance_, emission_,
                                             result_.solution, result_.row_sums, probing, listener_.progress);
   }

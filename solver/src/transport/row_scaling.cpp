@@ -18,6 +18,10 @@ constexpr double stop_share = 0.1;
 // Logarithm of the largest factor: a form factor off by 16 is no quadrature error, but a wrong matrix.
 constexpr double largest_logarithm = 1.3862943611198906;
 
+// Of the tolerance: what the last step may leave in its linear system, whose residual is a mean where the
+// tolerance holds for every row.
+constexpr double last_share = 0.1;
+
 // Newton steps: 5 are usual, and each step of a doubtful problem that does not halve the error is one too
 // many.
 constexpr int most_steps = 40;
@@ -100,9 +104,10 @@ RowScaling scale_rows(const SymmetricProduct& product, std::span<const double> a
   while (error > tolerance && result.iterations < most_steps) {
     ++result.iterations;
     const Vector gradient = mask.cwiseProduct(s - a);
-    // solved as far as the quadratic step can use it
+    // solved as far as the quadratic step can use it, and no further than asked
+    const double relative = std::clamp(std::max(error, last_share * tolerance / error), 1e-10, 0.05);
     const Vector positive = s.cwiseMax(1e-300);
-    Vector step = newton_step(product, d, positive, mask, -gradient, std::clamp(error, 1e-10, 0.05));
+    Vector step = newton_step(product, d, positive, mask, -gradient, relative);
     const double longest = step.cwiseAbs().maxCoeff();
     if (longest > 1) step /= longest;
 

@@ -60,9 +60,11 @@ DirectLight direct_irradiance(const PatchMesh& mesh, const RayScene& occluders, 
       const PatchFrame patch = patch_frame(mesh, i, occluders);
       seen[i] = not_facing;
       if (!faces(patch, lamp)) return 0;
+      const int count = is_close(patch, lamp) ? plan.shadow_rays : first_rays;
       const LampView view =
-          rays.view(patch, lamp, first_rays, mixed_seed(options.seed ^ first_stream ^ l << 32, i));
-      seen[i] = !view.some_lit ? hidden : view.some_hidden ? partly : lit;
+          rays.view(patch, lamp, count, mixed_seed(options.seed ^ first_stream ^ l << 32, i));
+      const bool agreed = view.rays > 0 && view.some_lit != view.some_hidden;
+      seen[i] = !agreed ? partly : view.some_lit ? lit : hidden;
       share[i] = static_cast<float>(view.share);
       return view.rays;
     });

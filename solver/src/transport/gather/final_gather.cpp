@@ -32,14 +32,22 @@ class PackedField {
     }
   }
   const Eigen::Array4f& operator[](std::uint32_t patch) const { return rows_[patch]; }
+  PatchRows rows() const { return {reinterpret_cast<const char*>(rows_.data()), sizeof(rows_[0])}; }
 
  private:
   std::vector<Eigen::Array4f, Eigen::aligned_allocator<Eigen::Array4f>> rows_;
 };
 
+/// Adds what the rays of a packet met. Few lanes at a time, whose sums stay in registers.
 void add(const PackedField& field, std::span<const std::uint32_t> met, PacketField& sums) {
-  for (std::size_t q = 0; q < met.size(); q += lanes) {
-    for (int k = 0; k < lanes; ++k) sums[k] += field[met[q + k]].cast<double>();
+  constexpr int at_once = 4;
+  for (int k = 0; k < lanes; k += at_once) {
+    std::array<Eigen::Array4d, at_once> sum;
+    std::copy_n(&sums[k], at_once, sum.begin());
+    for (std::size_t q = k; q < met.size(); q += lanes) {
+      for (int j = 0; j < at_once; ++j) sum[j] += field[met[q + j]].cast<double>();
+    }
+    std::copy_n(sum.begin(), at_once, &sums[k]);
   }
 }
 
@@ -64,9 +72,11 @@ class FinalGather {
     tbb::parallel_for(all, [&](const tbb::blocked_range<std::size_t>& range) {
       if (stage.cancelled()) return;
       std::vector<PacketSums> sums(together);
+      std::vector<PacketFrame> frames;
       for (std::size_t block = range.begin(); block < range.end(); ++block) {
         const std::size_t first = block * together, count = std::min(together, packets - first);
-        sum_up(first, count, fields, sums);
+        rays_.aim(first, count, frames);
+        sum_up(first, frames, fields, sums);
         for (std::size_t k = 0; k < count; ++k) {
           shares[first + k] = finish(first + k, sums[k], gathered);
         }
@@ -87,8 +97,9 @@ class FinalGather {
   };
 
   /// Means over all rays of some packets, and over the first half of them.
-  void sum_up(std::size_t first, std::size_t packets, const std::vector<PackedField>& fields,
+  void sum_up(std::size_t first, std::span<const PacketFrame> frames, const std::vector<PackedField>& fields,
               std::vector<PacketSums>& sums) const {
+    const std::size_t packets = frames.size();
     for (PacketSums& sum : sums) {
       sum.all.resize(fields.size());
       for (PacketField& field : sum.all) field.fill(Eigen::Array4d::Zero());
@@ -98,17 +109,17 @@ class FinalGather {
     const int a_visit = rays_.rays_together();
     std::vector<std::uint32_t> fresh(packets * a_visit * lanes);
     for (int q = 0; q < count;) {
-      // up to the end of the stored ones, the half, a visit
-      int end = std::min(count, q + a_visit);
-      if (q < kept_) end = std::min(end, kept_);
-      if (q < half) end = std::min(end, half);
+      // up to the end of the stored ones, a visit
+      const int end = std::min(q < kept_ ? kept_ : count, q + a_visit);
       const std::size_t rays = static_cast<std::size_t>(end - q) * lanes;
-      if (q >= kept_) rays_.trace_together(first, packets, q, end - q, fresh.data());
+      if (q >= kept_) rays_.trace_together(first, frames, q, end - q, fresh.data(), fields[0].rows());
+      const std::size_t in_half = static_cast<std::size_t>(std::clamp(half - q, 0, end - q)) * lanes;
       for (std::size_t p = 0; p < packets; ++p) {
         std::span<const std::uint32_t> met(fresh.data() + p * rays, rays);
         if (q < kept_) met = stored_.hits(first + p).subspan(static_cast<std::size_t>(q) * lanes, rays);
-        add_up(met, fields, sums[p]);
-        if (end == half) sums[p].half = sums[p].all;
+        add_up(met.first(in_half), fields, sums[p]);
+        if (q < half && end >= half) sums[p].half = sums[p].all;
+        add_up(met.subspan(in_half), fields, sums[p]);
       }
       q = end;
     }
@@ -126,9 +137,11 @@ class FinalGather {
               PacketSums& sums) const {
     const auto nothing = static_cast<std::uint32_t>(mesh_.size());
     for (std::size_t f = 0; f < fields.size(); ++f) add(fields[f], met, sums.all[f]);
+    std::array<int, lanes> lost = sums.lost;
     for (std::size_t m = 0; m < met.size(); m += lanes) {
-      for (int k = 0; k < lanes; ++k) sums.lost[k] += met[m + k] == nothing;
+      for (int k = 0; k < lanes; ++k) lost[k] += met[m + k] == nothing;
     }
+    sums.lost = lost;
   }
 
   /// Smooths a packet and puts it where it belongs; gives the mean share by which it followed its fits.

@@ -101,7 +101,9 @@ std::unique_ptr<GatherOperator> stored_rays(const GatherRays& rays, int count, c
   tbb::parallel_for(std::size_t{0}, (packets.size() + together - 1) / together, [&](std::size_t block) {
     if (stage.cancelled()) return;
     const std::size_t first = block * together, some = std::min(together, packets.size() - first);
-    rays.trace_together(first, some, 0, count, &hits[first * of_packet]);
+    std::vector<PacketFrame> frames;
+    rays.aim(first, some, frames);
+    rays.trace_together(first, frames, 0, count, &hits[first * of_packet]);
     stage.add(static_cast<double>(some));
   });
   stage.finish();

@@ -1,5 +1,7 @@
 #include "transport/gather/gather_rays.h"
 
+#include <hwy/cache_control.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -10,7 +12,6 @@
 #include "enclosures/shells.h"
 #include "enclosures/triangle_soup.h"
 #include "sampling/owen_sobol.h"
-#include "sampling/sobol_words.h"
 #include "transport/gather/packets.h"
 #include "transport/gather/patch_frame.h"
 #include "transport/gather/sorted_rays.h"
@@ -44,8 +45,15 @@ constexpr std::size_t large_scene = 100'000;
 constexpr std::size_t sorted_packets = 512;
 constexpr int sorted_rays = 64;
 
-// Rays of one packet between two visits to the sums: their patches stay in the first cache.
-constexpr int rays_a_visit = 128;
+// Share of a quad's area in its second triangle, below which no point falls there.
+constexpr double least_share = 0x1p-24;
+
+// Rays of one packet between two visits to the sums: their patches, 32 kB, stay in the first cache or close
+// by.
+constexpr int rays_a_visit = 512;
+
+// Rays of one packet after which the doubtful ones are settled.
+constexpr int rays_a_doubt = 64;
 
 /// Whether most packets hold patches of many polygons in a large scene.
 bool rough(const PatchMesh& mesh) {
@@ -75,15 +83,7 @@ std::vector<std::int32_t> closed_cells(const PatchMesh& mesh, const RayScene& oc
 
 }  // namespace
 
-PatchNet::PatchNet(int count)
-    : blocks_((count + lanes - 1) / lanes), words_(4 * static_cast<std::size_t>(this->count())) {
-  const std::vector<std::uint32_t> words = reversed_sobol_words(this->count());
-  for (int b = 0; b < blocks_; ++b) {
-    for (int k = 0; k < lanes; ++k) {
-      for (int q = 0; q < 4; ++q) words_[(4 * b + q) * lanes + k] = words[4 * (b * lanes + k) + q];
-    }
-  }
-}
+PatchNet::PatchNet(int count) : blocks_((count + lanes - 1) / lanes), words_(net_words(count)) {}
 
 GatherRays::GatherRays(const PatchMesh& mesh, const RayScene& occluders, int count, std::uint64_t seed,
                        int most)
@@ -98,8 +98,10 @@ GatherRays::GatherRays(const PatchMesh& mesh, const RayScene& occluders, int cou
   if (rough(mesh)) together_ = sorted_packets;
   scene_.map = &map_;
   scene_.nothing = mesh.size();
-  const bool any = std::any_of(enclosures_.begin(), enclosures_.end(), [](int cell) { return cell >= 0; });
-  scene_.enclosures = any ? enclosures_.data() : nullptr;
+  // with one cell for all there is no other to be met
+  const bool one = std::all_of(enclosures_.begin(), enclosures_.end() - 1,
+                               [&](std::int32_t cell) { return cell == enclosures_[0]; });
+  scene_.enclosures = one ? nullptr : enclosures_.data();
 }
 
 std::size_t GatherRays::bytes() const {
@@ -111,17 +113,35 @@ const PatchLocator& GatherRays::locator() const {
   return *locator_;
 }
 
+/// Calls for all that frame_of() will read: patch by patch it would wait for each.
+void GatherRays::call_for(const GatherOperator::Packet& packet) const {
+  for (const int patch : packet) {
+    if (patch < 0) return;
+    hwy::Prefetch(&mesh_.centroids[patch]);
+    hwy::Prefetch(&mesh_.normals[patch]);
+    for (int k = 0; k < mesh_.corner_count(patch); ++k) {
+      hwy::Prefetch(&mesh_.vertices[mesh_.corners[patch][k]]);
+    }
+  }
+}
+
 PacketFrame GatherRays::frame_of(const GatherOperator::Packet& packet, std::uint64_t seed_of_all) const {
   PacketFrame frame;
+  call_for(packet);
+  bool triangles = true, parallelograms = true;
   const Vec3 tangent = mesh_.normals[packet[0]].unitOrthogonal();
+  Vec3 normal = Vec3::Zero(), aligned = normal, bitangent = normal;
   for (int k = 0; k < lanes; ++k) {
     const int patch = packet[k] >= 0 ? packet[k] : packet[0];
     const PatchFrame own = patch_frame(mesh_, patch, occluders_);
-    // neighbours turn their frames alike, so that equal numbers are nearly equal directions
-    Vec3 aligned = tangent - tangent.dot(own.normal) * own.normal;
-    if (aligned.norm() < 0.1) aligned = own.normal.unitOrthogonal();
-    aligned.normalize();
-    const Vec3 bitangent = own.normal.cross(aligned);
+    if (own.normal != normal) {
+      // neighbours turn their frames alike, so that equal numbers are nearly equal directions
+      normal = own.normal;
+      aligned = tangent - tangent.dot(normal) * normal;
+      if (aligned.norm() < 0.1) aligned = normal.unitOrthogonal();
+      aligned.normalize();
+      bitangent = normal.cross(aligned);
+    }
     for (int c = 0; c < 3; ++c) {
       frame.corner[c][k] = static_cast<float>(own.corner[c]);
       frame.first[c][k] = static_cast<float>(own.first[c]);
@@ -132,38 +152,73 @@ PacketFrame GatherRays::frame_of(const GatherOperator::Packet& packet, std::uint
       frame.bitangent[c][k] = static_cast<float>(bitangent[c]);
     }
     frame.share[k] = static_cast<float>(own.share);
+    frame.first_scale[k] = static_cast<float>(1 / own.share);
+    frame.other_scale[k] = static_cast<float>(1 / std::max(1 - own.share, least_share));
+    triangles = triangles && mesh_.corner_count(patch) == 3;
+    parallelograms = parallelograms && own.parallelogram;
     const std::uint64_t seed = mixed_seed(seed_of_all ^ own_stream, patch);
-    for (int q = 0; q < 4; ++q) frame.seeds[q][k] = static_cast<std::uint32_t>(mixed_seed(seed, q));
+    const std::uint64_t place = mixed_seed(seed, 0), direction = mixed_seed(seed, 1);
+    frame.turned[0][k] = static_cast<std::uint32_t>(place);
+    frame.turned[1][k] = static_cast<std::uint32_t>(place >> 32);
+    frame.turned[2][k] = static_cast<std::uint32_t>(direction) & lower_digits_;
+    frame.turned[3][k] = static_cast<std::uint32_t>(direction >> 32) & lower_digits_;
     frame.enclosure[k] = enclosures_[patch];
     frame.valid[k] = packet[k] >= 0 ? -1 : 0;
   }
+  using Shape = PacketFrame::Shape;
+  frame.shape = triangles ? Shape::triangles : parallelograms ? Shape::parallelograms : Shape::quads;
   const std::uint64_t seed = mixed_seed(seed_of_all ^ shared_stream, packet[0]);
-  for (int q = 0; q < 2; ++q) frame.shared_seeds[q] = static_cast<std::uint32_t>(mixed_seed(seed, q));
+  for (int q = 0; q < 4; ++q) frame.seeds[q] = static_cast<std::uint32_t>(mixed_seed(seed, q));
   return frame;
 }
 
-void GatherRays::trace(std::size_t packet, int first, int count, std::uint32_t* met) const {
-  const PacketFrame frame = frame_of(packets_[packet], seed_);
+void GatherRays::trace(const PacketScene& scene, const GatherOperator::Packet& packet,
+                       const PacketFrame& frame, int first, int count, std::uint32_t* met) const {
+  PacketScene asking = scene;
+  const bool closed = std::any_of(packet.begin(), packet.end(),
+                                  [&](int patch) { return patch >= 0 && enclosures_[patch] >= 0; });
   std::vector<DoubtfulRay> doubtful;
-  trace_packet(scene_, frame, first, count, met, doubtful);
-  settle(packets_[packet], first, doubtful, met);
+  Certainty certainty;
+  for (int q = 0; q < count; q += rays_a_doubt) {
+    std::uint32_t* ends = met + static_cast<std::size_t>(q) * lanes;
+    doubtful.clear();
+    asking.doubt_lost = closed || !certainty.enough();
+    trace_packet(asking, frame, first + q, std::min(rays_a_doubt, count - q), ends, doubtful);
+    if (!doubtful.empty()) settle(packet, first + q, doubtful, ends, certainty);
+  }
+}
+
+bool GatherRays::Certainty::enough() const {
+  return lost >= lost_for_certain && lost > wrong_among * found;
+}
+
+void GatherRays::trace(std::size_t packet, int first, int count, std::uint32_t* met) const {
+  trace(scene_, packets_[packet], frame_of(packets_[packet], seed_), first, count, met);
 }
 
 int GatherRays::rays_together() const {
   return together_ == 1 ? rays_a_visit : sorted_rays;
 }
 
-void GatherRays::trace_together(std::size_t first_packet, std::size_t packets, int first, int count,
-                                std::uint32_t* met) const {
+void GatherRays::aim(std::size_t first_packet, std::size_t packets, std::vector<PacketFrame>& frames) const {
+  frames.resize(packets);
+  for (std::size_t p = 0; p < packets; ++p) frames[p] = frame_of(packets_[first_packet + p], seed_);
+}
+
+void GatherRays::trace_together(std::size_t first_packet, std::span<const PacketFrame> frames, int first,
+                                int count, std::uint32_t* met, PatchRows rows) const {
+  PacketScene scene = scene_;
+  // of rays that are sorted first, the rows are read much later
+  if (together_ == 1) scene.rows = rows;
   const std::size_t of_packet = static_cast<std::size_t>(count) * lanes;
   if (together_ == 1) {
-    for (std::size_t p = 0; p < packets; ++p) trace(first_packet + p, first, count, met + p * of_packet);
+    for (std::size_t p = 0; p < frames.size(); ++p) {
+      trace(scene, packets_[first_packet + p], frames[p], first, count, met + p * of_packet);
+    }
     return;
   }
-  std::vector<PacketFrame> frames;
-  for (std::size_t p = 0; p < packets; ++p) frames.push_back(frame_of(packets_[first_packet + p], seed_));
   static thread_local SortedRays sorted;
-  trace_sorted(scene_, frames, first, count, met, sorted);
+  trace_sorted(scene, frames, first, count, met, sorted);
   std::stable_sort(sorted.doubtful.begin(), sorted.doubtful.end(),
                    [](const DoubtfulRay& a, const DoubtfulRay& b) {
                      return std::pair(a.ray, a.lane) < std::pair(b.ray, b.lane);
@@ -175,24 +230,23 @@ void GatherRays::trace_together(std::size_t first_packet, std::size_t packets, i
       of_one.push_back(*from);
       of_one.back().ray -= packet * count;
     }
-    settle(packets_[first_packet + packet], first, of_one, met + packet * of_packet);
+    Certainty certainty;
+    settle(packets_[first_packet + packet], first, of_one, met + packet * of_packet, certainty);
   }
 }
 
 void GatherRays::trace_sample(std::size_t packet, int sample, int count, std::uint32_t* met) const {
   const PacketFrame frame = frame_of(packets_[packet], mixed_seed(seed_ ^ sample_stream, sample));
-  std::vector<DoubtfulRay> doubtful;
-  trace_packet(scene_, frame, 0, count, met, doubtful);
-  settle(packets_[packet], 0, doubtful, met);
+  trace(scene_, packets_[packet], frame, 0, count, met);
 }
 
 bool GatherRays::set_count(int count) {
   count_ = count;
-  words_ = reversed_sobol_words(std::max(count, most_rays_sampled));
+  words_ = net_words(std::max(count, most_rays_sampled));
   scene_.words = words_.data();
-  const std::uint32_t digits = scene_.lower_digits;
-  scene_.lower_digits = map_.triangles().size() > large_scene ? 0 : 0xffffffffu >> shared_digits(count);
-  return scene_.lower_digits == digits;
+  const std::uint32_t digits = lower_digits_;
+  lower_digits_ = map_.triangles().size() > large_scene ? 0 : 0xffffffffu >> shared_digits(count);
+  return lower_digits_ == digits;
 }
 
 void GatherRays::trace_patch(int patch, const PatchNet& net, std::uint64_t seed, std::uint32_t* met) const {
@@ -201,28 +255,27 @@ void GatherRays::trace_patch(int patch, const PatchNet& net, std::uint64_t seed,
   PacketFrame frame = frame_of(packet, seed_);
   const std::uint64_t own = mixed_seed(seed ^ single_stream, patch);
   for (int q = 0; q < 4; ++q) {
-    std::fill_n(frame.seeds[q], lanes, static_cast<std::uint32_t>(mixed_seed(own, q)));
+    frame.seeds[q] = static_cast<std::uint32_t>(mixed_seed(own, q));
+    std::fill_n(frame.turned[q], lanes, 0u);
   }
   PacketScene scene = scene_;
   scene.words = net.words_.data();
   scene.lane_words = true;
-  scene.lower_digits = ~0u;
-  std::vector<DoubtfulRay> doubtful;
-  trace_packet(scene, frame, 0, net.blocks_, met, doubtful);
-  settle(packet, 0, doubtful, met);
+  trace(scene, packet, frame, 0, net.blocks_, met);
 }
 
 void GatherRays::settle(const GatherOperator::Packet& packet, int first,
-                        const std::vector<DoubtfulRay>& doubtful, std::uint32_t* met) const {
-  int asked = 0, lost = 0, found = 0;
+                        std::span<const DoubtfulRay> doubtful, std::uint32_t* met,
+                        Certainty& certainty) const {
+  int asked = 0;
   for (const DoubtfulRay& ray : doubtful) {
     const int patch = packet[ray.lane];
     const bool closed = enclosures_[patch] >= 0;
-    if (ray.lost && !closed && lost >= lost_for_certain && lost > wrong_among * found) continue;
+    if (ray.lost && !closed && certainty.enough()) continue;
     std::uint32_t& end = met[static_cast<std::size_t>(ray.ray) * lanes + ray.lane];
     end = settled(patch, ray);
     ++asked;
-    ++(end == static_cast<std::uint32_t>(mesh_.size()) ? lost : found);
+    if (ray.lost) ++(end == static_cast<std::uint32_t>(mesh_.size()) ? certainty.lost : certainty.found);
     if (closed && end == static_cast<std::uint32_t>(mesh_.size())) {
       end = replaced(patch, mixed_seed(seed_ ^ replacement_stream, first + ray.ray));
     }

@@ -60,9 +60,11 @@ class GatherRays {
   std::size_t packets_together() const { return together_; }
   /// Rays of a packet that are best traced in one go.
   int rays_together() const;
-  /// The same for packets first_packet .. first_packet + packets, which trace() alone would give as well.
-  void trace_together(std::size_t first_packet, std::size_t packets, int first, int count,
-                      std::uint32_t* met) const;
+  /// Where the rays of packets first_packet .. first_packet + packets start, for all goes at them.
+  void aim(std::size_t first_packet, std::size_t packets, std::vector<PacketFrame>& frames) const;
+  /// trace() for the packets of these frames. The rows of patches met are called into the cache.
+  void trace_together(std::size_t first_packet, std::span<const PacketFrame> frames, int first, int count,
+                      std::uint32_t* met, PatchRows rows = {}) const;
 
   /// What the rays of one net of `net`'s points from one patch meet, as trace() tells it. Other seeds give
   /// independent nets; none depends on the packets' own rays.
@@ -72,10 +74,18 @@ class GatherRays {
   std::int64_t asked_twice() const { return asked_twice_; }
 
  private:
+  void call_for(const GatherOperator::Packet& packet) const;
   PacketFrame frame_of(const GatherOperator::Packet& packet, std::uint64_t seed) const;
+  void trace(const PacketScene& scene, const GatherOperator::Packet& packet, const PacketFrame& frame,
+             int first, int count, std::uint32_t* met) const;
+  /// Of a packet's lost rays: those that were asked again and are lost, and those that are not.
+  struct Certainty {
+    int lost = 0, found = 0;
+    bool enough() const;
+  };
   /// Puts right what `doubtful` says of rays first .. of a packet.
-  void settle(const GatherOperator::Packet& packet, int first, const std::vector<DoubtfulRay>& doubtful,
-              std::uint32_t* met) const;
+  void settle(const GatherOperator::Packet& packet, int first, std::span<const DoubtfulRay> doubtful,
+              std::uint32_t* met, Certainty& certainty) const;
   int patch_hit(int patch, const DoubtfulRay& ray) const;
   std::uint32_t settled(int patch, const DoubtfulRay& ray) const;
   std::uint32_t replaced(int patch, std::uint64_t seed) const;
@@ -89,6 +99,7 @@ class GatherRays {
   std::vector<GatherOperator::Packet> packets_;
   HitMap map_;
   std::vector<std::uint32_t> words_;
+  std::uint32_t lower_digits_ = 0;  // of a direction: those that are a patch's own
   std::size_t together_ = 1;
   std::vector<std::int32_t> enclosures_;  // the closed cell of each patch or -1; and of nothing
   PacketScene scene_;

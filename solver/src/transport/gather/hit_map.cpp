@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <span>
 #include <stdexcept>
 
@@ -55,7 +56,9 @@ double HitMap::texels_for(int patches, int rays) {
   return std::max(least_texels, std::min(wanted, texels_in_all / std::max(1, patches)));
 }
 
-HitMap::HitMap(const PatchMesh& mesh, double texels_a_patch) : triangles_(mesh.occluders.triangles.size()) {
+// one triangle where there is none: a lane that met nothing reads it
+HitMap::HitMap(const PatchMesh& mesh, double texels_a_patch)
+    : triangles_(std::max<std::size_t>(1, mesh.occluders.triangles.size())) {
   const Occluders& occluders = mesh.occluders;
   const int polygons = occluders.polygon_count;
   const Lists triangles_of(occluders.polygons, polygons);
@@ -68,34 +71,40 @@ HitMap::HitMap(const PatchMesh& mesh, double texels_a_patch) : triangles_(mesh.o
   const Lists patches_of(side_of, 2 * polygons);
 
   std::vector<PlanePicture> pictures(polygons);
-  std::vector<std::array<std::int32_t, 2>> first(polygons, {no_side, no_side});
+  std::vector<std::int32_t> first(polygons, 0);
   std::size_t total = 0;
   for (int p = 0; p < polygons; ++p) {
-    const std::size_t count = std::max(patches_of[2 * p].size(), patches_of[2 * p + 1].size());
-    if (count > 1) {
-      pictures[p] =
-          plane_picture(occluders, triangles_of[p], fronts[p], static_cast<double>(count) * texels_a_patch);
+    const auto front = patches_of[2 * p], back = patches_of[2 * p + 1];
+    const auto& [fewer, more] = std::minmax(front, back, [](auto a, auto b) { return a.size() < b.size(); });
+    if (more.size() > 1) {
+      const auto grid = fewer.size() > 1 ? std::nullopt : grid_picture(mesh, triangles_of[p], more);
+      pictures[p] = grid ? *grid
+                         : plane_picture(occluders, triangles_of[p], fronts[p],
+                                         static_cast<double>(more.size()) * texels_a_patch);
     }
+    first[p] = static_cast<std::int32_t>(total);
     for (int side = 0; side < 2; ++side) {
-      if (patches_of[2 * p + side].empty()) continue;
-      first[p][side] = static_cast<std::int32_t>(total);
-      total += static_cast<std::size_t>(pictures[p].width) * pictures[p].height;
+      if (!patches_of[2 * p + side].empty()) total += pictures[p].texels();
     }
   }
-  if (total > std::numeric_limits<std::int32_t>::max()) {
+  if (total >= std::numeric_limits<std::int32_t>::max()) {
     throw std::invalid_argument("HitMap: more patches than texel numbers of 31 bits");
   }
-  texels_.assign(total, ask);
+  texels_.assign(total + 1, ask);
+  texels_.back() = mesh.size();
   const ContactEdges contacts(mesh);
   tbb::parallel_for(0, polygons, [&](int p) {
     const PlanePicture& picture = pictures[p];
+    std::size_t drawn = first[p];
     for (int side = 0; side < 2; ++side) {
       const auto patches = patches_of[2 * p + side];
       if (patches.empty()) continue;
-      const std::span<std::int32_t> texels(texels_.data() + first[p][side],
-                                           static_cast<std::size_t>(picture.width) * picture.height);
+      const std::span<std::int32_t> texels(texels_.data() + drawn, picture.texels());
+      drawn += picture.texels();
       if (patches.size() == 1) {
         std::fill(texels.begin(), texels.end(), patches[0]);
+      } else if (picture.grid) {
+        draw_grid(mesh, patches, picture, texels);
       } else {
         draw_patches(mesh, patches, picture, texels);
         for (const auto& [a, b] : contacts.between(patches)) {
@@ -103,12 +112,13 @@ HitMap::HitMap(const PatchMesh& mesh, double texels_a_patch) : triangles_(mesh.o
         }
       }
     }
+    const std::uint32_t sides =
+        (patches_of[2 * p].empty() ? 0 : front_side) | (patches_of[2 * p + 1].empty() ? 0 : back_side);
     for (int t : triangles_of[p]) {
       Triangle& triangle = triangles_[t];
-      triangle.width = picture.width;
-      triangle.height = picture.height;
-      triangle.first[0] = first[p][0];
-      triangle.first[1] = first[p][1];
+      triangle.size = static_cast<std::uint32_t>(picture.width) |
+                      static_cast<std::uint32_t>(picture.height) << size_bits | sides;
+      triangle.first = first[p];
       const auto& [a, b, c] = occluders.triangles[t];
       const Eigen::Vector2d x = picture.at(occluders.vertices[a]);
       const Eigen::Vector2d u = picture.at(occluders.vertices[b]) - x;
@@ -125,13 +135,13 @@ HitMap::HitMap(const PatchMesh& mesh, double texels_a_patch) : triangles_(mesh.o
 
 std::int32_t HitMap::at(int triangle, bool front, float u, float v) const {
   const Triangle& t = triangles_[triangle];
-  const std::int32_t first = t.first[front ? 0 : 1];
-  if (first == no_side) return off_patches;
-  const auto clamped = [](float x, std::int32_t size) {
-    return std::clamp(static_cast<std::int32_t>(x), std::int32_t{0}, size - 1);
-  };
-  const std::int32_t x = clamped(t.x0 + u * t.xu + v * t.xv, t.width);
-  return texels_[first + clamped(t.y0 + u * t.yu + v * t.yv, t.height) * t.width + x];
+  if (!(t.size & (front ? front_side : back_side))) return off_patches;
+  const auto width = static_cast<std::int32_t>(t.size & largest_size);
+  const auto height = static_cast<std::int32_t>(t.size >> size_bits & largest_size);
+  const bool behind = !front && (t.size & front_side);
+  const std::int32_t x = std::min(static_cast<std::int32_t>(t.x0 + u * t.xu + v * t.xv), width - 1);
+  const std::int32_t y = std::min(static_cast<std::int32_t>(t.y0 + u * t.yu + v * t.yv), height - 1);
+  return texels_[t.first + ((behind ? height : 0) + y) * width + x];
 }
 
 }  // namespace luxel

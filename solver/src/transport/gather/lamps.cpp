@@ -100,18 +100,7 @@ void set_frame(Lamp& lamp) {
 
 }  // namespace
 
-Vec3 Lamp::point(double s, double t) const {
-  if (triangle) {  // the square folded, which keeps neighbours together (Heitz 2019)
-    const double half_s = s / 2, half_t = t / 2;
-    const bool above = t > s;
-    s = above ? half_s : s - half_t;
-    t = above ? t - half_s : half_t;
-  }
-  return corner + s * along + t * up;
-}
-
 bool Lamp::holds(const Vec3& point) const {
-  if (fills_frame) return true;
   // crossings of a half line
   const Vec3 x = along.normalized(), y = normal.cross(x);
   const double px = point.dot(x), py = point.dot(y);

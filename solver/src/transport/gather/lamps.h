@@ -20,8 +20,6 @@ struct Lamp {
   double area = 0;              ///< [m2]
   Eigen::RowVectorXd emission;  ///< m columns [W/m2]
 
-  /// A point of the frame, for (s, t) uniform in the unit square; of the lamp itself where it is a triangle.
-  Vec3 point(double s, double t) const;
   /// Whether a point of its plane is on it.
   bool holds(const Vec3& point) const;
   /// From a point to the nearest of the frame's.

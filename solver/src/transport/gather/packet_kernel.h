@@ -13,27 +13,45 @@ namespace luxel {
 struct alignas(64) PacketFrame {
   static constexpr int lanes = GatherOperator::lanes;
 
-  // points of a patch: corner + s first + t second in its first triangle, corner + s second + t third in the
-  // other, s + t <= 1; `share` is the first triangle's share of the area
-  float corner[3][lanes], first[3][lanes], second[3][lanes], third[3][lanes], share[lanes];
+  enum class Shape { triangles, parallelograms, quads };
+
+  // Points of a patch, s and t in [0, 1): of a parallelogram corner + s first + t third; of a triangle corner
+  // + s first + t second, the square folded to s + t <= 1; of another quad the same in its first triangle,
+  // and corner + s second + t third in the other. `share` is the first triangle's share of the area.
+  float corner[3][lanes], first[3][lanes], second[3][lanes], third[3][lanes];
+  float share[lanes], first_scale[lanes], other_scale[lanes];  ///< 1 / share, 1 / (1 - share)
   float tangent[3][lanes], bitangent[3][lanes], normal[3][lanes];
-  std::uint32_t seeds[4][lanes];  ///< of points and of the lower digits of directions
+  /// What of a point of the packet's net is turned over in each lane: all digits of places, the lower ones of
+  /// directions. A net with some digits turned over in all points is one again, as evenly spread.
+  std::uint32_t turned[4][lanes];
   std::int32_t
       enclosure[lanes];       ///< a closed one, beyond which nothing can be met; -1: not known to be closed
   std::int32_t valid[lanes];  ///< -1 in use, 0 idle
-  std::uint32_t shared_seeds[2];  ///< of the upper digits of directions; last, so that all rows are aligned
+  std::uint32_t seeds[4];     ///< of the scrambling of the net; last, so that all rows are aligned
+  Shape shape;                ///< of all lanes
+};
+
+/// A row of memory for each patch.
+struct PatchRows {
+  const char* first = nullptr;  ///< null: none
+  std::size_t bytes = 0;        ///< of a row
 };
 
 /// What all packets share.
 struct PacketScene {
   void* embree = nullptr;                ///< RTCScene
-  const std::uint32_t* words = nullptr;  ///< reversed_sobol_words, 4 a ray, or 4 rows of one a lane
+  const std::uint32_t* words = nullptr;  ///< net_words()
   bool lane_words = false;               ///< each lane has a point of the net for itself
-  std::uint32_t lower_digits = 0;        ///< mask of the digits of a direction that are a lane's own
   const HitMap* map = nullptr;
-  std::int32_t nothing = 0;                  ///< what a lost ray met
-  const std::int32_t* enclosures = nullptr;  ///< of each patch, and of `nothing`; null: all open
+  std::int32_t nothing = 0;  ///< what a lost ray met
+  const std::int32_t* enclosures =
+      nullptr;             ///< of each patch, and of `nothing`; null: a ray cannot leave its own
+  PatchRows rows;          ///< those of patches met will be read soon
+  bool doubt_lost = true;  ///< lost rays are doubtful
 };
+
+/// reversed_sobol_words for `count` points, and up to a multiple of 16: blocks of 16 points, 4 rows a block.
+std::vector<std::uint32_t> net_words(int count);
 
 /// A ray whose end float cannot tell for certain, in the ray scene's coordinates.
 struct DoubtfulRay {

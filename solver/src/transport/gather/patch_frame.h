@@ -12,6 +12,7 @@ struct PatchFrame {
   Vec3 first, second, third;  ///< from the corner to the next ones; third = 0 for triangles
   double share;               ///< of the area in the triangle corner, first, second
   Vec3 normal;
+  bool parallelogram;  ///< second = first + third
 };
 
 PatchFrame patch_frame(const PatchMesh& mesh, int patch, const RayScene& occluders);

@@ -136,8 +136,11 @@ PlanePicture plane_picture(const Occluders& occluders, std::span<const int> tria
   const double area = front.norm() / 2;
   if (!(smallest > 0) || smallest > most_emptiness * area) return picture;  // one texel
   const double side = std::sqrt(area / texels);
-  picture.width = static_cast<int>(std::ceil(extent[0] / side));
-  picture.height = static_cast<int>(std::ceil(extent[1] / side));
+  const auto steps = [&](double length) {
+    return static_cast<int>(std::ceil(std::min<double>(length / side, HitMap::largest_size)));
+  };
+  picture.width = steps(extent[0]);
+  picture.height = steps(extent[1]);
   picture.origin = occluders.vertices[occluders.triangles[triangles[0]][0]] + best.low[0] * picture.along_x +
                    best.low[1] * picture.along_y;
   picture.along_x *= picture.width / extent[0];

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "luxel/patch_mesh.h"
@@ -11,7 +13,9 @@ namespace luxel {
 struct PlanePicture {
   Vec3 origin = Vec3::Zero();
   Vec3 along_x = Vec3::Zero(), along_y = Vec3::Zero();  ///< texels a metre
-  int width = 1, height = 1;
+  int width = 1, height = 1;                            ///< HitMap::largest_size at most
+  bool grid = false;                                    ///< a texel a patch
+  std::size_t texels() const { return static_cast<std::size_t>(width) * height; }
 
   Eigen::Vector2d at(const Vec3& point) const {
     return {(point - origin).dot(along_x), (point - origin).dot(along_y)};
@@ -24,6 +28,15 @@ struct PlanePicture {
 /// @param front      its normal, of any length but 0
 PlanePicture plane_picture(const Occluders& occluders, std::span<const int> triangles, const Vec3& front,
                            double texels);
+
+/// The picture whose texels are the patches of a polygon's side, one each, where they are equal
+/// parallelograms in rows and columns: it knows their boundaries exactly. Else nothing.
+std::optional<PlanePicture> grid_picture(const PatchMesh& mesh, std::span<const int> triangles,
+                                         std::span<const int> patches);
+
+/// Writes each patch into its texel of their grid_picture(), and HitMap::ask into texels without a patch.
+void draw_grid(const PatchMesh& mesh, std::span<const int> patches, const PlanePicture& picture,
+               std::span<std::int32_t> texels);
 
 /// Writes into each texel the patch at some point of it, so that patches have their share of the texels on
 /// edges; beside the outline the nearest; and HitMap::ask where that would leave some patch without a texel,

@@ -15,6 +15,9 @@ struct LampView {
   bool some_lit = false, some_hidden = false;  ///< of these
 };
 
+/// Whether a lamp is so near, or touches, that some of the patch may see what a few rays do not.
+bool is_close(const PatchFrame& patch, const Lamp& lamp);
+
 /// Rays between quasi-random points of a patch and a lamp. Immutable.
 class ShadowRays {
  public:
@@ -22,7 +25,8 @@ class ShadowRays {
   ShadowRays(const RayScene& occluders, int most);
 
   /// The share of `lamp` that a patch sees, by about `count` rays: points of the lamp's frame that are off it
-  /// cost none. Rays weigh what they would carry.
+  /// cost none. Rays weigh what they would carry; as many again are drawn by the cosine where lamps are
+  /// close.
   LampView view(const PatchFrame& patch, const Lamp& lamp, int count, std::uint64_t seed) const;
 
  private:

@@ -38,22 +38,19 @@ HWY_INLINE uint32_t DirectionCell(float x, float y, float z) {
 void TraceSorted(const PacketScene& scene, const PacketFrame* frames, int packets, int first, int count,
                  uint32_t* met, SortedRays& sorted) {
   const int step = static_cast<int>(hn::Lanes(Real()));
-  const LaineKarras scramble;
+  NetPoints points;
   const size_t all = static_cast<size_t>(packets) * count * lanes;
   sorted.resize(all);
   // all rays, packet by packet
   size_t at = 0;
   for (int p = 0; p < packets; ++p) {
     for (int q = 0; q < count; ++q, at += lanes) {
-      const uint32_t* words = scene.words + 4 * static_cast<size_t>(first + q);
-      const uint32_t height = bits_reversed(scramble(words[2], frames[p].shared_seeds[0]));
-      const uint32_t azimuth = bits_reversed(scramble(words[3], frames[p].shared_seeds[1]));
+      const int point = (first + q) % lanes;
+      if (q == 0 || point == 0) points.Scramble(scene.words, (first + q) / lanes, frames[p].seeds);
       float* const origins[3] = {&sorted.origins[0][at], &sorted.origins[1][at], &sorted.origins[2][at]};
       float* const directions[3] = {&sorted.directions[0][at], &sorted.directions[1][at],
                                     &sorted.directions[2][at]};
-      for (int k = 0; k < lanes; k += step) {
-        StartRays(scene, frames[p], words, height, azimuth, k, origins, directions);
-      }
+      StartRays(points, point, frames[p], origins, directions);
     }
   }
   // by direction, in each cell by place

@@ -9,7 +9,9 @@
 #include "form_factors/shaft.h"
 #include "stage_progress.h"
 #include "transport/hierarchical/block_end.h"
+#include "transport/hierarchical/block_errors.h"
 #include "transport/hierarchical/block_rays.h"
+#include "transport/hierarchical/corner_error.h"
 #include "transport/hierarchical/near_occluders.h"
 #include "transport/hierarchical/store_block.h"
 
@@ -20,52 +22,19 @@ namespace {
 // Tasks in the fixed list: enough to keep many cores busy to the end.
 constexpr std::size_t task_count = 4096;
 
-// Bilinear interpolation of the kernel between ends of radii r and s at distance d errs by about this times
-// ((r + s) / d)^2 of it.
-constexpr double interpolation_error = 0.5;
-
-// Ends nearer than this, (r + s) / d, are too close for the nodes to tell the kernel; what they exchange is
-// then uncertain by this share of it.
-constexpr double touching_ratio = 0.8;
-constexpr double touching_error = 0.25;
-
-// Nearer single patches, and those that straddle, get an exact kernel.
-constexpr double near_ratio = 0.5;
-
-// An end partly behind the other's horizon: the kernel has a kink.
-constexpr double straddling_error = 0.1;
-constexpr double straddling_depth = 1e-7;
-
-// What a block with some occluder between may err by before rays are cast, after they agreed, and where they
-// do not, beside their own standard error.
-constexpr double unknown_error = 0.04;
-constexpr double agreed_error = 0.04;
-constexpr double mixed_error = 0.12;
-
-// Horizons and near occluders change the kernel across an end alike for all parts of the other's
-// surroundings, whose errors then add up, to this many times the accuracy at most.
-constexpr double coherent_error = 5;
-
-// The bilinear interpolation across a horizon errs by this share of what all of the plane behind it sends.
-constexpr double kink_error = 0.5;
-
-// The shadow of an occluder `near` radii away changes across an end by 1 / near^2 of this.
-constexpr double shadow_error = 0.125;
-
-// So many blocks, about, share one shadow's error: smaller ones may be mixed.
-constexpr double coherence = 14;
-
-// Rays: the first lot, and the most that two single patches get.
+// Rays: the first lot, what clusters get where these do not agree or an occluder is near, and the most that
+// two single patches get.
 constexpr int first_rays = 16;
+constexpr int more_rays = 32;
 constexpr int most_rays = 256;
 
-// Rays that must agree where an occluder is near.
-constexpr int agreeing_rays = 256;
+// What comes within so many of a flat end's radii stands on it.
+constexpr double standing = 0.1;
 
 // Long lists of occluders are looked through again only once the ends have shrunk to this share: bodies of
 // many facets seldom let a block go for certain, and rays decide in the end.
 constexpr std::size_t long_list = 8;
-constexpr double shrunk_enough = 0.6;
+constexpr double shrunk_enough = 0.45;
 
 class Assembly {
  public:
@@ -75,8 +44,8 @@ class Assembly {
         scene_(scene),
         brightness_(brightness),
         options_(options),
-        kink_(coherent_error * options.accuracy / kink_error),
-        near_(std::sqrt(shadow_error / (coherent_error * options.accuracy))),
+        coherent_(coherent_error * options.accuracy),
+        near_(std::sqrt(shadow_error / coherent_)),
         hiding_(scene.rays != nullptr),
         rays_(hierarchy, hiding_ ? scene.rays->scene() : nullptr, options.seed) {}
 
@@ -174,6 +143,45 @@ class Assembly {
     }
   }
 
+  // Divides an end that has an occluder near, unless all that can be asked agrees; else draws the rays that
+  // tell how much is hidden.
+  bool divided_by_shadows(const BlockEnd& r, const BlockEnd& s, double allowed,
+                          const HidingCandidates& candidates, RayCount& rays, BlockList& list,
+                          std::vector<Task>* deferred) const {
+    const bool counts = coherence * mixed_error > allowed;
+    const bool near_r = counts && occluder_near(scene_.occluders, candidates, r, near_);
+    const bool near_s = counts && occluder_near(scene_.occluders, candidates, s, near_);
+    bool large_r = near_r, large_s = near_s;
+    if ((near_r || near_s) && rays.unanimous()) {
+      // a few rays that agree are no proof where much is half hidden all around
+      rays_.cast_between_corners(r, s, rays);
+      if (rays.borne_out()) rays_.cast(r, s, more_rays, rays);
+      if (rays.unanimous() && rays.borne_out()) {
+        const auto stands = [&](const BlockEnd& end) {
+          return rays.visible > 0 && occluder_stands_on(scene_.occluders, candidates, end, standing);
+        };
+        large_r = near_r && !r.single && stands(r);
+        large_s = near_s && !s.single && stands(s);
+      }
+    }
+    const bool dividing = (large_r && !r.single) || (large_s && !s.single);
+    if (!dividing && !rays.unanimous()) rays_.cast(r, s, more_rays, rays);
+    list.rays += rays.all + rays.corners;
+    return divide_one(r, s, large_r, large_s, candidates, list, deferred);
+  }
+
+  // Error of the kernel across an end that the other's horizon crosses.
+  static double kink(const BlockEnd& end, const BlockEnd& other, const std::array<double, 16>& at_nodes,
+                     double share) {
+    return end.bounds.planar ? corner_error(end, other, at_nodes) : kink_error * share;
+  }
+
+  static std::array<double, 16> transposed(const std::array<double, 16>& values) {
+    std::array<double, 16> turned;
+    for (int k = 0; k < 16; ++k) turned[4 * (k & 3) + (k >> 2)] = values[k];
+    return turned;
+  }
+
   void between(const BlockEnd& r, const BlockEnd& s, const HidingCandidates& inherited, BlockList& list,
                std::vector<Task>* deferred) const {
     const Span over_r = heights_over(r.bounds, s.bounds);
@@ -224,9 +232,20 @@ class Assembly {
       return;
     }
     const double nearby = std::numbers::pi * apart * apart;
-    const bool kinked_r = straddling_r && share * std::min(nearby, plane_area(s)) * bright_s > kink_;
-    const bool kinked_s = straddling_s && share * std::min(nearby, plane_area(r)) * bright_r > kink_;
+    const bool kinked_r =
+        straddling_r && !r.single &&
+        kink(r, s, kernel.values, share) * std::min(nearby, plane_area(s)) > kink_share * coherent_;
+    const bool kinked_s = straddling_s && !s.single &&
+                          kink(s, r, transposed(kernel.values), share) * std::min(nearby, plane_area(r)) >
+                              kink_share * coherent_;
     if (divide_one(r, s, kinked_r, kinked_s, candidates, list, deferred)) return;
+    const double smooth = coherent_ / rough_error;
+    if (divide_one(r, s, r.roughness > smooth, s.roughness > smooth, candidates, list, deferred)) return;
+    const BlockTolerance tolerance{options_.block_error, bright_r, bright_s};
+    if (single && (ratio > near_ratio || straddling_r || straddling_s)) {
+      store_near(r, s, candidates.empty(), allowed, tolerance, list);
+      return;
+    }
     RayCount rays;
     if (!candidates.empty()) {
       if (!single && unknown_error > allowed) {
@@ -236,22 +255,14 @@ class Assembly {
       rays_.cast(r, s, first_rays, rays);
       if (single) {
         while (rays.error() > allowed && rays.drawn < most_rays) rays_.cast(r, s, 2 * rays.drawn, rays);
+        list.rays += rays.all;
       } else if ((rays.unanimous() ? agreed_error : mixed_error) > allowed) {
         list.rays += rays.all;
         divide(r, s, candidates, list, deferred);
         return;
+      } else if (divided_by_shadows(r, s, allowed, candidates, rays, list, deferred)) {
+        return;
       }
-      const bool counts = !single && coherence * mixed_error > allowed;
-      const bool near_r = counts && occluder_near(scene_.occluders, candidates, r, near_);
-      const bool near_s = counts && occluder_near(scene_.occluders, candidates, s, near_);
-      // a few rays that agree are no proof where much is half hidden all around
-      if (near_r || near_s) {
-        while (rays.unanimous() && rays.drawn < agreeing_rays) {
-          rays_.cast(r, s, rays.drawn + first_rays, rays);
-        }
-      }
-      list.rays += rays.all;
-      if (!rays.unanimous() && divide_one(r, s, near_r, near_s, candidates, list, deferred)) return;
       if (rays.all > 0 && rays.visible == 0) {
         ++list.hidden;
         return;
@@ -259,16 +270,29 @@ class Assembly {
     } else {
       ++list.unhidden;
     }
-    const bool near = single && (ratio > near_ratio || straddling_r || straddling_s);
-    store_block(r, s, kernel, rays, near, {options_.block_error, bright_r, bright_s}, list);
+    store_block(r, s, kernel, rays, tolerance, list);
+  }
+
+  // Single patches that are too close, or too steep, for the kernel between their nodes.
+  void store_near(const BlockEnd& r, const BlockEnd& s, bool unhidden, double allowed,
+                  const BlockTolerance& tolerance, BlockList& list) const {
+    int rays = 0;
+    const double visible = unhidden ? 1 : rays_.visible_share(r, s, allowed, rays);
+    list.rays += rays;
+    if (unhidden) ++list.unhidden;
+    if (visible > 0) {
+      store_near_block(r, s, visible, tolerance, list);
+    } else {
+      ++list.hidden;
+    }
   }
 
   const PatchHierarchy& hierarchy_;
   const HidingScene& scene_;
   const Brightness& brightness_;
   const AssemblyOptions& options_;
-  double kink_;  // what a plane may send to an end that it straddles
-  double near_;  // radii within which an occluder is near
+  double coherent_;  // what errors may add up to, of the irradiance
+  double near_;      // radii within which an occluder is near
   bool hiding_;
   BlockRays rays_;
 };

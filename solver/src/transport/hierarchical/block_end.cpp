@@ -26,7 +26,14 @@ void set_flat(BlockEnd& end, const PatchCluster& cluster, const FlatGroup& group
   bounds.radius = cluster.radius;
 }
 
-void set_rectangle(BlockEnd& end, const PatchCluster& cluster) {
+// Areas that differ by less are those of one rectangle.
+constexpr double same_area = 0.01;
+
+void set_box(BlockEnd& end, const PatchCluster& cluster) {
+  const double box = (cluster.box[1] - cluster.box[0]) * (cluster.box[3] - cluster.box[2]);
+  const double moments = 12 * cluster.axes.spread_s * cluster.axes.spread_t;
+  end.rectangle =
+      std::abs(box - end.area) < same_area * end.area && std::abs(moments - end.area) < same_area * end.area;
   const auto corner = [&](int s, int t) -> Vec3 {
     return cluster.axes.middle + cluster.box[s] * cluster.axes.u + cluster.box[t] * cluster.axes.v;
   };
@@ -85,7 +92,7 @@ BlockEnd block_end(const PatchHierarchy& hierarchy, int cluster, bool with_shaft
     end.usable = inner.usable;
     if (inner.flat_group >= 0) {
       set_flat(end, inner, hierarchy.groups[inner.flat_group]);
-      set_rectangle(end, inner);
+      set_box(end, inner);
     } else {
       set_curved(end, inner, hierarchy.curved[inner.curved]);
     }

@@ -14,7 +14,8 @@ namespace luxel {
 struct BlockEnd {
   int cluster = 0;
   bool single = false;
-  bool usable = false;  ///< may be an end of a block that is not divided
+  bool usable = false;     ///< may be an end of a block that is not divided
+  bool rectangle = false;  ///< of patches that fill the rectangle along its axes
   double area = 0;
   double roughness = 0;                                   ///< of a curved cluster; 0 where flat
   alignas(32) std::array<double, 4> x, y, z, nx, ny, nz;  ///< nodes and their normals

@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <memory>
 
 namespace luxel {
 
@@ -43,6 +44,57 @@ std::vector<std::size_t> runs_of(const std::vector<BlockList>& lists, std::size_
   }
   runs.push_back(lists.size());
   return runs;
+}
+
+// Adds to the irradiance h of both ends what the light q of the other sends. Sums are kept apart from memory
+// until they are whole: the compiler cannot know that q and h never overlap.
+template <int columns>
+void exchange(const ScalarBlock& block, const double* qr, const double* qs, double* hr, double* hs) {
+  constexpr int common = 4 * columns;
+  const double value = block.value;
+  for (int c = 0; c < columns; ++c) {
+    hr[common + c] += value * qs[common + c];
+    hs[common + c] += value * qr[common + c];
+  }
+}
+
+template <int columns>
+void exchange(const LinearBlock& block, const double* qr, const double* qs, double* hr, double* hs) {
+  constexpr int common = 4 * columns;
+  std::array<double, common> to_r;
+  std::array<double, columns> to_s{};
+  for (int a = 0; a < 4; ++a) {
+    const double value = block.values[a];
+    for (int c = 0; c < columns; ++c) {
+      to_r[a * columns + c] = value * qs[common + c];
+      to_s[c] += value * qr[a * columns + c];
+    }
+  }
+  for (int k = 0; k < common; ++k) hr[k] += to_r[k];
+  for (int c = 0; c < columns; ++c) hs[common + c] += to_s[c];
+}
+
+template <int columns>
+void exchange(const BilinearBlock& block, const double* qr, const double* qs, double* hr, double* hs) {
+  constexpr int size = 4 * columns;
+  std::array<double, size> from_r, from_s, to_r{}, to_s{};
+  for (int k = 0; k < size; ++k) {
+    from_r[k] = qr[k];
+    from_s[k] = qs[k];
+  }
+  for (int a = 0; a < 4; ++a) {
+    for (int b = 0; b < 4; ++b) {
+      const double value = block.values[4 * a + b];
+      for (int c = 0; c < columns; ++c) {
+        to_r[a * columns + c] += value * from_s[b * columns + c];
+        to_s[b * columns + c] += value * from_r[a * columns + c];
+      }
+    }
+  }
+  for (int k = 0; k < size; ++k) {
+    hr[k] += to_r[k];
+    hs[k] += to_s[k];
+  }
 }
 
 template <class Body>
@@ -96,12 +148,13 @@ template <int columns>
 void BlockProduct::apply_columns(const double* x, double* y, int stride) const {
   constexpr int size = values_a_node * columns, common = 4 * columns;
   const std::size_t total = tree_.nodes.size() * size;
-  std::vector<double> light(total);  // at the four nodes, and their sum
-  const auto lit = [&](int n) { return light.data() + static_cast<std::size_t>(n) * size; };
+  const auto light = std::make_unique_for_overwrite<double[]>(total);  // at the four nodes, and their sum
+  const auto lit = [&](int n) { return light.get() + static_cast<std::size_t>(n) * size; };
   for (std::size_t level = tree_.levels.size() - 1; level-- > 0;) {
     for_nodes(tree_.levels[level], tree_.levels[level + 1], [&](int n) {
       const ActiveNode& node = tree_.nodes[n];
       double* q = lit(n);
+      std::fill_n(q, size, 0.0);
       if (node.single) {
         for (int c = 0; c < columns; ++c) {
           q[common + c] = areas_[node.unknown] * x[static_cast<std::size_t>(node.unknown) * stride + c];
@@ -146,36 +199,13 @@ void BlockProduct::apply_columns(const double* x, double* y, int stride) const {
       }
     };
     of_part(&BlockList::scalars, [&](const ScalarBlock& block) {
-      double *hr = at(block.r) + common, *hs = at(block.s) + common;
-      const double *qr = lit(block.r) + common, *qs = lit(block.s) + common, value = block.value;
-      for (int c = 0; c < columns; ++c) {
-        hr[c] += value * qs[c];
-        hs[c] += value * qr[c];
-      }
+      exchange<columns>(block, lit(block.r), lit(block.s), at(block.r), at(block.s));
     });
     of_part(&BlockList::linears, [&](const LinearBlock& block) {
-      double *hr = at(block.r), *hs = at(block.s) + common;
-      const double *qr = lit(block.r), *qs = lit(block.s) + common;
-      for (int a = 0; a < 4; ++a) {
-        const double value = block.values[a];
-        for (int c = 0; c < columns; ++c) {
-          hr[a * columns + c] += value * qs[c];
-          hs[c] += value * qr[a * columns + c];
-        }
-      }
+      exchange<columns>(block, lit(block.r), lit(block.s), at(block.r), at(block.s));
     });
     of_part(&BlockList::bilinears, [&](const BilinearBlock& block) {
-      double *hr = at(block.r), *hs = at(block.s);
-      const double *qr = lit(block.r), *qs = lit(block.s);
-      for (int a = 0; a < 4; ++a) {
-        for (int b = 0; b < 4; ++b) {
-          const double value = block.values[4 * a + b];
-          for (int c = 0; c < columns; ++c) {
-            hr[a * columns + c] += value * qs[b * columns + c];
-            hs[b * columns + c] += value * qr[a * columns + c];
-          }
-        }
-      }
+      exchange<columns>(block, lit(block.r), lit(block.s), at(block.r), at(block.s));
     });
   });
 

@@ -1,5 +1,7 @@
 #include "transport/hierarchical/brightness.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -11,23 +13,28 @@ namespace {
 
 // Nothing counts as darker than this share of the mean: rows must be right in shadows too, where other light
 // may go.
-constexpr double darkest_share = 0.3;
+constexpr double darkest_share = 0.6;
 
 // Bounces that tell where the light goes, and the most that a coarse operator, whose rows may exceed 1, is
 // let reflect.
 constexpr int bounces = 12;
 constexpr double most_reflected = 0.95;
 
-// Means of the clusters, none below the floor, from those of the patches by position.
+constexpr std::size_t patches_a_task = 16384;
+
+template <class Body>
+void for_patches(std::size_t count, const Body& body) {
+  tbb::parallel_for(
+      tbb::blocked_range<std::size_t>(0, count, patches_a_task),
+      [&](const tbb::blocked_range<std::size_t>& range) {
+        for (std::size_t k = range.begin(); k < range.end(); ++k) body(k);
+      },
+      tbb::simple_partitioner());
+}
+
+// Means of the clusters from those of the patches by position.
 Brightness with_clusters(const PatchHierarchy& hierarchy, std::vector<float> patches) {
   const PatchMesh& mesh = *hierarchy.mesh;
-  double mean = 0, total = 0;
-  for (std::size_t k = 0; k < patches.size(); ++k) {
-    mean += mesh.areas[hierarchy.order[k]] * patches[k];
-    total += mesh.areas[hierarchy.order[k]];
-  }
-  const auto floor = static_cast<float>(total > 0 ? darkest_share * mean / total : 0);
-  for (float& value : patches) value = std::max(value, floor);
   Brightness brightness{std::vector<float>(hierarchy.clusters.size()), std::move(patches)};
   for (int c = hierarchy.cluster_count() - 1; c >= 0; --c) {
     const PatchCluster& cluster = hierarchy.clusters[c];
@@ -52,10 +59,22 @@ Brightness brightest(const PatchHierarchy& hierarchy, const PatchField& radiosit
   Eigen::RowVectorXd weights(irradiance.size());
   for (Eigen::Index c = 0; c < weights.size(); ++c) weights[c] = irradiance[c] > 0 ? 1 / irradiance[c] : 0;
   if (!(weights.size() > 0 && weights.maxCoeff() > 0)) return uniform_brightness(hierarchy);
-  std::vector<float> patches(hierarchy.order.size());
-  for (std::size_t k = 0; k < patches.size(); ++k) {
-    patches[k] = static_cast<float>(radiosity.row(hierarchy.order[k]).cwiseProduct(weights).maxCoeff());
+  const PatchMesh& mesh = *hierarchy.mesh;
+  std::vector<float> by_patch(hierarchy.order.size()), patches(by_patch.size());
+  for_patches(by_patch.size(), [&](std::size_t p) {
+    const double* row = radiosity.data() + p * weights.size();
+    double most = 0;
+    for (Eigen::Index c = 0; c < weights.size(); ++c) most = std::max(most, row[c] * weights[c]);
+    by_patch[p] = static_cast<float>(most);
+  });
+  double mean = 0, total = 0;
+  for (std::size_t p = 0; p < by_patch.size(); ++p) {
+    mean += mesh.areas[p] * by_patch[p];
+    total += mesh.areas[p];
   }
+  const auto floor = static_cast<float>(total > 0 ? darkest_share * mean / total : 0);
+  for_patches(patches.size(),
+              [&](std::size_t k) { patches[k] = std::max(by_patch[hierarchy.order[k]], floor); });
   return with_clusters(hierarchy, std::move(patches));
 }
 

@@ -28,8 +28,8 @@ double block_error(double accuracy) {
 constexpr double first_coarsening = 10;
 constexpr double finest_first = 0.02;
 
-// Row error that scaling may leave; the rest, up to it, goes to the diagonal.
-constexpr double closed_within = 1e-7;
+// Row error that scaling may leave, as a share of the accuracy; the rest, up to it, goes to the diagonal.
+constexpr double closed_share = 0.01;
 
 void check(const PatchMesh& mesh, const Enclosures& enclosures, const PatchField& reflectance,
            const PatchField& emission, const HierarchicalOptions& options) {
@@ -85,7 +85,7 @@ std::vector<double> patch_row_sums(const Impl& impl) {
   return sums;
 }
 
-void close(Impl& impl, const Enclosures& enclosures, const Progress& progress) {
+void close(Impl& impl, const Enclosures& enclosures, double accuracy, const Progress& progress) {
   CoarseOperator& coarse = impl.coarse;
   const std::vector<int> patches = impl.interpolation.patch_of_unknowns();
   std::vector<int> enclosure(patches.size());
@@ -99,8 +99,8 @@ void close(Impl& impl, const Enclosures& enclosures, const Progress& progress) {
     for (std::size_t i = 0; i < patches.size(); ++i) y[i] *= coarse.areas()[i];
   };
   ClosureReport& report = impl.report.closure;
-  RowClosure closure =
-      close_enclosures(product, coarse.areas(), enclosure, std::move(active), closed_within, progress);
+  RowClosure closure = close_enclosures(product, coarse.areas(), enclosure, std::move(active),
+                                        closed_share * accuracy, progress);
   report.iterations = closure.iterations;
   if (closure.unclosed >= 0) {
     report.unclosed = patches[closure.unclosed];
@@ -113,12 +113,12 @@ void close(Impl& impl, const Enclosures& enclosures, const Progress& progress) {
 }
 
 std::unique_ptr<HierarchicalOperator> finished(std::unique_ptr<Impl> impl, const Enclosures& enclosures,
-                                               const Progress& progress) {
+                                               double accuracy, const Progress& progress) {
   ClosureReport& report = impl->report.closure;
   const std::vector<double>& areas = impl->interpolation.areas();
   impl->row_sums = patch_row_sums(*impl);
   report.before = report.after = row_sum_error(impl->row_sums, areas, enclosures);
-  close(*impl, enclosures, progress);
+  close(*impl, enclosures, accuracy, progress);
   if (report.applied) {
     impl->row_sums = patch_row_sums(*impl);
     report.after = row_sum_error(impl->row_sums, areas, enclosures);
@@ -149,7 +149,7 @@ std::unique_ptr<HierarchicalOperator> hierarchical_operator(
   for (const Occluder& occluder : scene.occluders.occluders) {
     impl->report.occluders += occluder.face_count();
   }
-  return finished(std::move(impl), enclosures, progress);
+  return finished(std::move(impl), enclosures, options.accuracy, progress);
 }
 
 std::unique_ptr<HierarchicalOperator> hierarchical_operator(const PatchMesh& mesh,
@@ -165,7 +165,7 @@ std::unique_ptr<HierarchicalOperator> hierarchical_operator(const PatchMesh& mes
   for (const Occluder& occluder : scene.occluders.occluders) {
     impl->report.occluders += occluder.face_count();
   }
-  return finished(std::move(impl), enclosures, progress);
+  return finished(std::move(impl), enclosures, options.accuracy, progress);
 }
 
 HierarchicalOperator::HierarchicalOperator(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace luxel {
 
@@ -22,23 +23,58 @@ double distance(const OccluderFace& face, const Vec3& x) {
   return std::sqrt(height * height + aside);
 }
 
+// Calls test(face) for the faces that may stand between, of bodies whose spheres come within `reach` of the
+// end's middle; stops where one holds. Round bodies count as `round`.
+template <class Test>
+bool any_face(const OccluderSet& occluders, const HidingCandidates& candidates, const BlockEnd& end,
+              double reach, bool round, const Test& test) {
+  for (const Candidate& candidate : candidates.list) {
+    const Occluder& occluder = occluders.occluders[candidate.occluder];
+    if ((occluder.centre - end.bounds.centre).norm() > reach + occluder.radius) continue;
+    if (occluder.round()) {
+      if (round) return true;
+      continue;
+    }
+    for (int k = 0; k < occluder.face_count(); ++k) {
+      if (!((candidate.from_a | candidate.from_b) >> k & 1)) continue;
+      if (test(occluders.faces[occluder.begin + k])) return true;
+    }
+  }
+  return false;
+}
+
+// From the middle of a flat end's rectangle along its axes to its sides.
+struct Reach {
+  double s, t;
+};
+
+double distance(const BlockEnd& end, const Reach& reach, const Vec3& x) {
+  const Vec3 from = x - end.axes.middle;
+  const double s = std::max(std::abs(end.axes.u.dot(from)) - reach.s, 0.0);
+  const double t = std::max(std::abs(end.axes.v.dot(from)) - reach.t, 0.0);
+  return std::hypot(s, t, end.bounds.plane.normal.dot(from));
+}
+
 }  // namespace
 
 bool occluder_near(const OccluderSet& occluders, const HidingCandidates& candidates, const BlockEnd& end,
                    double radii) {
   const double near_enough = radii * end.bounds.radius;
-  for (const Candidate& candidate : candidates.list) {
-    const Occluder& occluder = occluders.occluders[candidate.occluder];
-    if ((occluder.centre - end.bounds.centre).norm() > near_enough + occluder.radius) continue;
-    if (occluder.round()) return true;
-    for (int k = 0; k < occluder.face_count(); ++k) {
-      if (!((candidate.from_a | candidate.from_b) >> k & 1)) continue;
-      if (distance(occluders.faces[occluder.begin + k], end.bounds.centre) < near_enough) {
-        return true;
-      }
-    }
-  }
-  return false;
+  return any_face(occluders, candidates, end, near_enough, true,
+                  [&](const OccluderFace& face) { return distance(face, end.bounds.centre) < near_enough; });
+}
+
+bool occluder_stands_on(const OccluderSet& occluders, const HidingCandidates& candidates, const BlockEnd& end,
+                        double radii) {
+  if (!end.bounds.planar) return false;
+  const double near_enough = radii * end.bounds.radius;
+  const Reach reach{std::numbers::sqrt3 * end.axes.spread_s, std::numbers::sqrt3 * end.axes.spread_t};
+  return any_face(
+      occluders, candidates, end, near_enough + end.bounds.radius, false, [&](const OccluderFace& face) {
+        const Vec3* corners = face.outline.corners.data();
+        return std::any_of(corners, corners + face.outline.count,
+                           [&](const Vec3& corner) { return distance(end, reach, corner) < near_enough; });
+      });
 }
 
 }  // namespace luxel

@@ -17,9 +17,15 @@ struct HidingCandidates {
   bool empty() const { return list.empty(); }
 };
 
-/// Whether a face that may stand between is so near to the end, within `radii` of its radii, that its shadow
-/// changes across the end. Round bodies are near where their spheres are.
+/// Whether a face that may stand between is so near to the end, within `radii` of its radii from the middle,
+/// that its shadow changes across the end. Round bodies are near where their spheres are.
 bool occluder_near(const OccluderSet& occluders, const HidingCandidates& candidates, const BlockEnd& end,
                    double radii);
+
+/// Whether a corner of a face that may stand between is on a flat end's rectangle, or within `radii` of its
+/// radii from that: a leg that stands on a floor hides half of all directions from the points beside it,
+/// however thin it is.
+bool occluder_stands_on(const OccluderSet& occluders, const HidingCandidates& candidates, const BlockEnd& end,
+                        double radii);
 
 }  // namespace luxel

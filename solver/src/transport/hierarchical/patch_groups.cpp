@@ -1,5 +1,7 @@
 #include "transport/hierarchical/patch_groups.h"
 
+#include <tbb/parallel_for.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <limits>
@@ -91,14 +93,15 @@ void gather_flat_groups(PatchHierarchy& hierarchy, const Enclosures& enclosures)
     hierarchy.group[next[numbers[p]]] = numbers[p];
     hierarchy.order[next[numbers[p]]++] = p;
   }
-  for (std::size_t g = 0; g < first_patches.size(); ++g) {
-    hierarchy.groups.push_back(flat_group(mesh, hierarchy.frame, hierarchy.order.data() + begins[g],
-                                          hierarchy.order.data() + ends[g + 1]));
-    hierarchy.groups.back().finish = mesh.finishes[first_patches[g]];
-    const int enclosure = enclosures.enclosure[first_patches[g]];
-    hierarchy.groups.back().enclosure = enclosure;
-    hierarchy.groups.back().closed = enclosures.enclosure_closed[enclosure] != 0;
-  }
+  hierarchy.groups.resize(first_patches.size());
+  tbb::parallel_for(std::size_t{0}, first_patches.size(), [&](std::size_t g) {
+    FlatGroup& group = hierarchy.groups[g];
+    group = flat_group(mesh, hierarchy.frame, hierarchy.order.data() + begins[g],
+                       hierarchy.order.data() + ends[g + 1]);
+    group.finish = mesh.finishes[first_patches[g]];
+    group.enclosure = enclosures.enclosure[first_patches[g]];
+    group.closed = enclosures.enclosure_closed[group.enclosure] != 0;
+  });
 }
 
 }  // namespace luxel

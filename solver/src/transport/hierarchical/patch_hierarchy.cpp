@@ -38,8 +38,12 @@ class Builder {
     sort_groups(groups.begin(), groups.end());
     lay_out(groups);
     build_groups();
+    std::size_t count = groups.size();
+    for (const std::vector<PatchCluster>& tree : trees_) count += tree.size();
+    result_.clusters.reserve(count);
     int position = 0;
     result_.root = emit(0, static_cast<int>(groups.size()), -1, position);
+    fill_curved();
     number_single_patches();
     return std::move(result_);
   }
@@ -48,18 +52,23 @@ class Builder {
   const PatchMesh& mesh() const { return *result_.mesh; }
 
   void find_features() {
-    features_.assign(result_.groups.size(), Feature::Zero());
-    std::vector<double> totals(result_.groups.size(), 0.0);
-    sizes_.assign(result_.groups.size(), 0);
-    for (int k = 0; k < mesh().size(); ++k) {
-      const int p = result_.order[k], g = result_.group[k];
-      const double area = mesh().areas[p];
-      features_[g].head<3>() += area * result_.frame(mesh().centroids[p]).array();
-      features_[g].tail<3>() += area * normal_weight * mesh().normals[p].array();
-      totals[g] += area;
-      ++sizes_[g];
-    }
-    for (std::size_t g = 0; g < totals.size(); ++g) features_[g] /= totals[g];
+    const std::size_t count = result_.groups.size();
+    features_.assign(count, Feature::Zero());
+    sizes_.assign(count, 0);
+    for (int g : result_.group) ++sizes_[g];
+    std::vector<int> starts(count + 1, 0);
+    std::partial_sum(sizes_.begin(), sizes_.end(), starts.begin() + 1);
+    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t g) {
+      double total = 0;
+      for (int k = starts[g]; k < starts[g + 1]; ++k) {
+        const int p = result_.order[k];
+        const double area = mesh().areas[p];
+        features_[g].head<3>() += area * result_.frame(mesh().centroids[p]).array();
+        features_[g].tail<3>() += area * normal_weight * mesh().normals[p].array();
+        total += area;
+      }
+      features_[g] /= total;
+    });
   }
 
   // Sorts groups into the order of a tree that halves them along their widest feature; divisions_ keeps
@@ -123,21 +132,41 @@ class Builder {
     if (end - begin == 1) return emit_group(begin, parent);
     const int id = static_cast<int>(result_.clusters.size());
     result_.clusters.emplace_back();
-    CurvedCluster curved;
-    PatchCluster cluster = curved_cluster(result_, begins_[begin], begins_[end], begin, end, curved);
+    PatchCluster cluster;
     cluster.parent = parent;
-    cluster.curved = static_cast<int>(result_.curved.size());
-    result_.curved.push_back(curved);
+    cluster.curved = static_cast<int>(spans_.size());
+    spans_.push_back({id, begin, end});
     const int middle = begin + divisions_[division++];
     cluster.children[0] = emit(begin, middle, id, division);
     cluster.children[1] = emit(middle, end, id, division);
     cluster.child_count = 2;
-    for (int child : {cluster.children[0], cluster.children[1]}) {
-      if (child >= 0 && result_.clusters[child].flat_group < 0)
-        cluster.usable &= result_.clusters[child].usable;
-    }
     result_.clusters[id] = cluster;
     return id;
+  }
+
+  // What emit() left out: each is computed by itself, but that a cluster with parts that are not usable is
+  // not either.
+  void fill_curved() {
+    result_.curved.resize(spans_.size());
+    tbb::parallel_for(std::size_t{0}, spans_.size(), [&](std::size_t k) {
+      const auto [id, begin, end] = spans_[k];
+      PatchCluster& at = result_.clusters[id];
+      PatchCluster filled =
+          curved_cluster(result_, begins_[begin], begins_[end], begin, end, result_.curved[k]);
+      filled.parent = at.parent;
+      filled.curved = at.curved;
+      filled.children = at.children;
+      filled.child_count = at.child_count;
+      at = filled;
+    });
+    for (std::size_t k = spans_.size(); k-- > 0;) {
+      PatchCluster& cluster = result_.clusters[spans_[k].id];
+      for (int child : {cluster.children[0], cluster.children[1]}) {
+        if (child >= 0 && result_.clusters[child].flat_group < 0) {
+          cluster.usable &= result_.clusters[child].usable;
+        }
+      }
+    }
   }
 
   int emit_group(int group, int parent) {
@@ -165,11 +194,17 @@ class Builder {
     result_.root = number(result_.root);
   }
 
+  struct GroupSpan {
+    int id;          // of the cluster
+    int begin, end;  // sorted groups
+  };
+
   PatchHierarchy result_;
   std::vector<Feature> features_;
-  std::vector<int> sizes_;      // patches of each group
-  std::vector<int> divisions_;  // of sort_groups(), in preorder: groups on the left
-  std::vector<int> begins_;     // of sorted groups in the order of patches
+  std::vector<int> sizes_;        // patches of each group
+  std::vector<int> divisions_;    // of sort_groups(), in preorder: groups on the left
+  std::vector<int> begins_;       // of sorted groups in the order of patches
+  std::vector<GroupSpan> spans_;  // of clusters of several groups, parents first
   std::vector<std::vector<PatchCluster>> trees_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "form_factors/pair.h"
 
@@ -10,47 +11,40 @@ namespace luxel {
 namespace {
 
 // A side is taken for constant where that changes the irradiance by less than this share of the block's
-// error.
-constexpr double collapse_share = 0.3;
+// error: little, since neighbouring blocks slope alike.
+constexpr double collapse_share = 0.1;
 
 // An exact pair of patches may err by this share of the block's error.
 constexpr double near_share = 0.1;
 
-// Of what the kernel would let through.
-double visible_share(const BlockKernel& kernel, const RayCount& rays) {
-  if (rays.unanimous()) return rays.share();
-  double all = 0, visible = 0;
-  for (int k = 0; k < 16; ++k) {
-    all += kernel.values[k];
-    visible += kernel.values[k] * rays.share(k);
+// Shares that rays found are means over quarters of an end, whose middles are sqrt(3) / 2 as far out as its
+// nodes: both slopes are scaled up to these, or the irradiance would change too little across the end.
+// The end's nodes are pair & first and pair & second.
+void extend_to_nodes(std::array<double, 16>& shares, int first, int second) {
+  constexpr double further = 2 / std::numbers::sqrt3;
+  for (const int axis : {first, second}) {
+    for (int k = 0; k < 16; ++k) {
+      if (k & axis) continue;
+      const double mean = 0.5 * (shares[k] + shares[k | axis]);
+      shares[k] = mean + further * (shares[k] - mean);
+      shares[k | axis] = mean + further * (shares[k | axis] - mean);
+    }
   }
-  return all > 0 ? visible / all : rays.share();
-}
-
-// Single patches whose nodes are too far apart for the kernel between them.
-void store_near(const BlockEnd& r, const BlockEnd& s, double visible, double tolerance, BlockList& list) {
-  const Polygon p = clip(r.bounds.hull, s.bounds.plane, plane_tolerance);
-  const Polygon q = clip(s.bounds.hull, r.bounds.plane, plane_tolerance);
-  if (p.count == 0 || q.count == 0) return;
-  const double exchange = contour_exchange(p, q, tolerance * std::min(r.area, s.area));
-  if (!(exchange > 0)) return;
-  ++list.entries;
-  list.scalars.push_back({r.cluster, s.cluster, static_cast<float>(visible * exchange / (r.area * s.area))});
 }
 
 }  // namespace
 
 void store_block(const BlockEnd& r, const BlockEnd& s, const BlockKernel& kernel, const RayCount& rays,
-                 bool near, const BlockTolerance& tolerance, BlockList& list) {
-  if (near) {
-    const double brightest = std::max(tolerance.bright_r, tolerance.bright_s);
-    store_near(r, s, visible_share(kernel, rays), near_share * std::min(tolerance.error / brightest, 1.0),
-               list);
-    return;
-  }
+                 const BlockTolerance& tolerance, BlockList& list) {
   std::array<double, 16> values = kernel.values;
   if (rays.all > 0) {
-    for (int k = 0; k < 16; ++k) values[k] *= rays.share(k);
+    std::array<double, 16> shares;
+    for (int k = 0; k < 16; ++k) shares[k] = rays.share(k);
+    if (!rays.unanimous()) {
+      if (!r.single) extend_to_nodes(shares, 4, 8);
+      if (!s.single) extend_to_nodes(shares, 1, 2);
+    }
+    for (int k = 0; k < 16; ++k) values[k] *= shares[k];
   }
   std::array<double, 4> of_r{}, of_s{};
   double mean = 0;
@@ -85,6 +79,19 @@ void store_block(const BlockEnd& r, const BlockEnd& s, const BlockKernel& kernel
   } else {
     narrow(values, list.bilinears.emplace_back(BilinearBlock{r.cluster, s.cluster, {}}).values);
   }
+}
+
+void store_near_block(const BlockEnd& r, const BlockEnd& s, double visible, const BlockTolerance& tolerance,
+                      BlockList& list) {
+  const Polygon p = clip(r.bounds.hull, s.bounds.plane, plane_tolerance);
+  const Polygon q = clip(s.bounds.hull, r.bounds.plane, plane_tolerance);
+  if (p.count == 0 || q.count == 0) return;
+  const double brightest = std::max(tolerance.bright_r, tolerance.bright_s);
+  const double of_area = near_share * std::min(tolerance.error / brightest, 1.0);
+  const double exchange = contour_exchange(p, q, of_area * std::min(r.area, s.area));
+  if (!(exchange > 0)) return;
+  ++list.entries;
+  list.scalars.push_back({r.cluster, s.cluster, static_cast<float>(visible * exchange / (r.area * s.area))});
 }
 
 }  // namespace luxel

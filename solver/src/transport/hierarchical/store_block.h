@@ -14,9 +14,13 @@ struct BlockTolerance {
 
 /// Adds the kernel, with what rays left of it, to the list, as simply as the tolerance admits. A single patch
 /// has one value.
-/// @param near  both ends are single patches too near, or too steep, for the kernel between nodes: it is
-/// integrated exactly
 void store_block(const BlockEnd& r, const BlockEnd& s, const BlockKernel& kernel, const RayCount& rays,
-                 bool near, const BlockTolerance& tolerance, BlockList& list);
+                 const BlockTolerance& tolerance, BlockList& list);
+
+/// The same for single patches too near, or too steep, for the kernel between nodes: it is integrated
+/// exactly.
+/// @param visible  share of it that nothing hides
+void store_near_block(const BlockEnd& r, const BlockEnd& s, double visible, const BlockTolerance& tolerance,
+                      BlockList& list);
 
 }  // namespace luxel
