@@ -138,6 +138,8 @@ PatchMesh read_and_mesh(const SceneOptions& options, const GeneralOptions& gener
   PatchMesh mesh = mesh_scene(scene, options.meshing, progress);
   report.patches = mesh.size();
   report.scene.area = total_area(mesh);
+  report.scene.overlap_area = mesh.report.overlap_area;
+  report.scene.overlapping_faces = mesh.report.overlapping_faces;
   report.scene.warnings = mesh.warnings;
   return mesh;
 }

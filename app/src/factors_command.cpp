@@ -12,6 +12,7 @@
 #include "progress_bar.h"
 #include "reporting.h"
 #include "run_command.h"
+#include "shortfall.h"
 #include "usage.h"
 
 namespace luxel::app {
@@ -89,7 +90,9 @@ ExitStatus run(const FactorsCommand& command) {
     if (command.by_group) report.group_factors = between_groups(assembly.mesh, *assembly.transport);
     if (command.point) report.point_factors = from_point(assembly.mesh, *command.point);
     write(command, assembly, progress);
-    reached = accuracy_reached(assembly, true);
+    const std::string inaccurate = accuracy_shortfall(assembly, true);
+    reached = inaccurate.empty();
+    if (!reached) report.scene.warnings.push_back(inaccurate);
   }
   add_run_figures(report, watch);
   for (const std::string& file : command.outputs) {

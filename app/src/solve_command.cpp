@@ -8,6 +8,7 @@
 #include "progress_bar.h"
 #include "reporting.h"
 #include "run_command.h"
+#include "shortfall.h"
 #include "solution_files.h"
 #include "usage.h"
 
@@ -48,6 +49,14 @@ ExitStatus run(const SolveCommand& command) {
         "light arrives nowhere: no patch faces one that shines; are the faces turned inside out?");
   }
 
+  const std::string unconverged = solver_shortfall(solution.report, command.solve);
+  const std::string inaccurate = accuracy_shortfall(assembly, false);
+  if (!report.partial) {
+    for (const std::string& text : {unconverged, inaccurate}) {
+      if (!text.empty()) report.scene.warnings.push_back(text);
+    }
+  }
+
   add_run_figures(report, watch);
   // a wish to stop has been heard: now it is written
   files.write(solution, report, report.partial ? Progress() : progress);
@@ -58,9 +67,7 @@ ExitStatus run(const SolveCommand& command) {
     std::fputs("luxel: stopped; what was solved so far is marked as partial\n", stderr);
     return interrupted;
   }
-
-  const bool solved = solution.report.converged || solution.report.stopped == Stopped::bounces;
-  return solved && accuracy_reached(assembly, false) ? done : not_reached;
+  return unconverged.empty() && inaccurate.empty() ? done : not_reached;
 }
 
 }  // namespace luxel::app

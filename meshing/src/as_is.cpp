@@ -13,19 +13,21 @@ namespace {
 struct Piece {
   std::vector<int> corners;
   int polygon;
+  char front, back;
 };
 
 void append_pieces_of(const Facets& facets, CornerPositions& positions, int facet, int polygon,
                       std::vector<Piece>& pieces) {
   const std::span<const int> loop = facets.loop(facet);
   const std::span<const Vec3> points = positions(loop);
+  const char front = facets.front[facet], back = facets.back[facet];
   if (loop.size() == 3 || (loop.size() == 4 && is_convex(points))) {
-    pieces.push_back({{loop.begin(), loop.end()}, polygon});
+    pieces.push_back({{loop.begin(), loop.end()}, polygon, front, back});
     return;
   }
   for (const auto& t : triangulate_loop(points)) {
     const std::array<Vec3, 3> triangle = {points[t[0]], points[t[1]], points[t[2]]};
-    if (has_area(triangle)) pieces.push_back({{loop[t[0]], loop[t[1]], loop[t[2]]}, polygon});
+    if (has_area(triangle)) pieces.push_back({{loop[t[0]], loop[t[1]], loop[t[2]]}, polygon, front, back});
   }
 }
 
@@ -53,14 +55,13 @@ void append_facets(PatchMesh& mesh, const Scene& scene, const Facets& facets,
     for (; end < facets.size() && facets.faces[end] == face; ++end) {
       append_pieces_of(facets, positions, end, polygon_of_facet[end], pieces);
     }
-    if (facets.front[begin]) {
-      for (const Piece& piece : pieces) append_patch(mesh, scene, piece.corners, face, piece.polygon);
+    for (const Piece& piece : pieces) {
+      if (piece.front) append_patch(mesh, scene, piece.corners, face, piece.polygon);
     }
-    if (facets.back[begin]) {
-      for (Piece& piece : pieces) {
-        std::reverse(piece.corners.begin(), piece.corners.end());
-        append_patch(mesh, scene, piece.corners, face, piece.polygon);
-      }
+    for (Piece& piece : pieces) {
+      if (!piece.back) continue;
+      std::reverse(piece.corners.begin(), piece.corners.end());
+      append_patch(mesh, scene, piece.corners, face, piece.polygon);
     }
   }
 }

@@ -49,7 +49,7 @@ double largest_of(int count, const std::vector<Vec3>& vertices, const Measure& m
 
 }  // namespace
 
-void measure_quality(PatchMesh& mesh, const Facets& facets) {
+void measure_quality(PatchMesh& mesh, const Facets& facets, double cut_area) {
   std::vector<double> angles(mesh.size());
   MeshReport& report = mesh.report;
   report.max_aspect = largest_of(mesh.size(), mesh.vertices, [&](int i, CornerPositions& corners) {
@@ -78,7 +78,7 @@ void measure_quality(PatchMesh& mesh, const Facets& facets) {
         areas[i] = area_vector(points).norm() * (facets.front[i] + facets.back[i]);
         return -smallest_angle(points);
       });
-  const double scene_area = std::accumulate(areas.begin(), areas.end(), 0.0);
+  const double scene_area = std::accumulate(areas.begin(), areas.end(), 0.0) - cut_area;
   report.area_error = std::abs(total_area(mesh) - scene_area) / scene_area;
   report.welded_vertices = facets.welded_vertices;
   report.degenerate_faces = facets.degenerate_faces;

@@ -1,10 +1,13 @@
 #include "luxel/mesh_scene.h"
 
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <optional>
 #include <stdexcept>
 
 #include "as_is.h"
+#include "cut_overlaps.h"
 #include "edge_table.h"
 #include "facets.h"
 #include "luxel/input_error.h"
@@ -52,6 +55,36 @@ bool keeps_faces(const MeshingOptions& options, std::size_t face_patches,
   return true;
 }
 
+/// Facets made to meet corner to corner, and what of them blocks light.
+struct Surface {
+  std::optional<RepairedFacets> repaired;  ///< nothing: they did so before
+  std::optional<EdgeTable> edges;          ///< of the repaired facets, else of the facets
+  FacetOccluders blocking;
+};
+
+Surface make_surface(const Facets& facets) {
+  Surface surface;
+  surface.edges.emplace(facets.loops, static_cast<int>(facets.vertices.size()));
+  surface.repaired = repair_t_junctions(facets, *surface.edges);
+  const Facets& conforming = surface.repaired ? surface.repaired->facets : facets;
+  if (surface.repaired) {
+    surface.edges.emplace(conforming.loops, static_cast<int>(conforming.vertices.size()));
+  }
+  surface.blocking = make_occluders(conforming, *surface.edges);
+  return surface;
+}
+
+std::string overlap_warning(const CutFacets& cut, bool kept) {
+  std::array<char, 32> area;
+  std::snprintf(area.data(), area.size(), "%.3g", cut.area);
+  return std::to_string(cut.faces) + (cut.faces == 1 ? " face lies" : " faces lie") +
+         " in part or all in the same plane and on the same side as an earlier one, by " + area.data() +
+         " m2 (first: face " + std::to_string(cut.first_face) + " and face " +
+         std::to_string(cut.first_above) + "); " +
+         (kept ? "as-is keeps them, and light counts twice there"
+               : "what the earlier one covers is cut away");
+}
+
 }  // namespace
 
 PatchMesh mesh_scene(const Scene& scene, const MeshingOptions& options, const Progress& progress) {
@@ -65,24 +98,32 @@ PatchMesh mesh_scene(const Scene& scene, const MeshingOptions& options, const Pr
   const bool as_is = keeps_faces(options, face_patches, mesh.warnings);
   if (as_is) refuse_too_many(scene, static_cast<double>(face_patches), options.max_patches);
 
-  std::optional<EdgeTable> edges;
-  edges.emplace(facets.loops, static_cast<int>(facets.vertices.size()));
-  const std::optional<RepairedFacets> repaired = repair_t_junctions(facets, *edges);
-  const Facets& conforming = repaired ? repaired->facets : facets;
-  if (repaired) edges.emplace(conforming.loops, static_cast<int>(conforming.vertices.size()));
-  FacetOccluders blocking = make_occluders(conforming, *edges);
-  mesh.occluders = std::move(blocking.occluders);
+  Surface surface = make_surface(facets);
+  std::optional<CutFacets> cut = cut_overlaps(facets, surface.blocking.regions, surface.blocking.overlaps);
+  if (cut) {
+    mesh.report.overlapping_faces = cut->faces;
+    mesh.report.overlap_area = cut->area;
+    mesh.warnings.push_back(overlap_warning(*cut, options.as_is));
+    if (options.as_is) cut.reset();
+  }
+  if (cut) surface = make_surface(cut->facets);
+  surface.blocking.regions = {};
+  mesh.occluders = std::move(surface.blocking.occluders);
+  const std::vector<int>& polygon_of_facet = surface.blocking.polygon_of_facet;
+  const Facets& kept = cut ? cut->facets : facets;
+  const std::optional<RepairedFacets>& repaired = surface.repaired;
   if (as_is) {
-    edges.reset();  // what is made now takes its memory
-    append_facets(mesh, scene, facets, blocking.polygon_of_facet);
+    surface.edges.reset();  // what is made now takes its memory
+    append_facets(mesh, scene, kept, polygon_of_facet);
   } else {
-    append_sized(mesh, scene, conforming, *edges, blocking.polygon_of_facet, options, progress);
+    const Facets& conforming = repaired ? repaired->facets : kept;
+    append_sized(mesh, scene, conforming, *surface.edges, polygon_of_facet, options, progress);
     if (repaired) mesh.report.repaired_t_junctions = repaired->repaired;
   }
   measure_patches(mesh);
-  measure_quality(mesh, facets);
+  measure_quality(mesh, facets, cut ? cut->area : 0);
   // Patches that are the facets, none of which has a vertex on an edge, have none either.
-  const bool found_before = as_is && !repaired && facets.split_faces == 0;
+  const bool found_before = as_is && !repaired && !cut && facets.split_faces == 0;
   mesh.report.remaining_t_vertices = found_before ? 0 : count_t_vertices(mesh);
   tell(progress, 1);
   return mesh;

@@ -24,10 +24,23 @@ RepeatedLoops find_coincident(const FlatPolygons& polygons) {
   return find_repeated(keys);
 }
 
+/// Overlaps of regions as pairs of different polygons, each once.
+std::vector<std::array<int, 2>> name_polygons(const std::vector<OverlappingPair>& overlaps,
+                                              const std::vector<int>& polygon_of_region) {
+  std::vector<std::array<int, 2>> pairs;
+  for (const OverlappingPair& overlap : overlaps) {
+    const auto [a, b] = std::minmax(polygon_of_region[overlap.first], polygon_of_region[overlap.second]);
+    if (a != b) pairs.push_back({a, b});
+  }
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  return pairs;
+}
+
 }  // namespace
 
 FacetOccluders make_occluders(const Facets& facets, const EdgeTable& edges) {
-  const MergedPolygons merged = merge_facets(facets, edges, [](int, int) { return true; });
+  MergedPolygons merged = merge_facets(facets, edges, [](int, int) { return true; });
   const Regions& regions = merged.regions;
   const RepeatedLoops repeated = find_coincident(merged.polygons);
 
@@ -57,6 +70,9 @@ FacetOccluders make_occluders(const Facets& facets, const EdgeTable& edges) {
   }
   result.polygon_of_facet.reserve(facets.size());
   for (const int r : regions.region_of_facet) result.polygon_of_facet.push_back(polygon_of_region[r]);
+  result.overlaps = find_overlapping(facets.vertices, merged);
+  occluders.coplanar = name_polygons(result.overlaps, polygon_of_region);
+  if (!result.overlaps.empty()) result.regions = std::move(merged.regions);
   return result;
 }
 

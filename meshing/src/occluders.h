@@ -5,6 +5,8 @@
 #include "edge_table.h"
 #include "facets.h"
 #include "luxel/patch_mesh.h"
+#include "overlapping_polygons.h"
+#include "regions.h"
 
 namespace luxel {
 
@@ -12,6 +14,8 @@ namespace luxel {
 struct FacetOccluders {
   Occluders occluders;
   std::vector<int> polygon_of_facet;
+  Regions regions;  ///< coplanar facets, coincident ones each for themselves; none without overlaps
+  std::vector<OverlappingPair> overlaps;  ///< regions that lie over each other
 };
 
 /// Coplanar facets merged into polygons, whatever their materials, and cut into triangles. The merged surface

@@ -31,6 +31,15 @@ Vec3 triangle_normal(const Occluders& occluders, int triangle) {
   return (occluders.vertices[b] - occluders.vertices[a]).cross(occluders.vertices[c] - occluders.vertices[a]);
 }
 
+/// Of any length.
+std::vector<Vec3> polygon_normals(const Occluders& occluders) {
+  std::vector<Vec3> normals(occluders.polygon_count, Vec3::Zero());
+  for (std::size_t t = 0; t < occluders.triangles.size(); ++t) {
+    normals[occluders.polygons[t]] += triangle_normal(occluders, static_cast<int>(t));
+  }
+  return normals;
+}
+
 }  // namespace
 
 /// What a patch takes up in the plane of its sheet [m].
@@ -43,7 +52,10 @@ struct PatchLocator::Box {
   Eigen::Array2d middle() const { return (low + high) / 2; }
 };
 
-PatchLocator::PatchLocator(const PatchMesh& mesh) : mesh_(mesh), sheets_(2 * mesh.occluders.polygon_count) {
+PatchLocator::PatchLocator(const PatchMesh& mesh)
+    : mesh_(mesh),
+      sheets_(2 * mesh.occluders.polygon_count),
+      coplanar_(mesh.occluders, polygon_normals(mesh.occluders)) {
   if (mesh.size() == 0) return;
   Vec3 low = mesh.centroids[0], high = low;
   for (const Vec3& x : mesh.vertices) {
@@ -52,16 +64,13 @@ PatchLocator::PatchLocator(const PatchMesh& mesh) : mesh_(mesh), sheets_(2 * mes
   }
   tolerance_ = outline_tolerance * (high - low).norm();
 
-  std::vector<Vec3> polygon_normals(mesh.occluders.polygon_count, Vec3::Zero());
-  for (std::size_t t = 0; t < mesh.occluders.triangles.size(); ++t) {
-    polygon_normals[mesh.occluders.polygons[t]] += triangle_normal(mesh.occluders, static_cast<int>(t));
-  }
+  const std::vector<Vec3> normals = polygon_normals(mesh.occluders);
 
   // patches by sheet: counted, then placed
   std::vector<int> sheet_of(mesh.size());
   std::vector<int> starts(sheets_.size() + 1, 0);
   for (int i = 0; i < mesh.size(); ++i) {
-    const bool front = mesh.normals[i].dot(polygon_normals[mesh.polygons[i]]) > 0;
+    const bool front = mesh.normals[i].dot(normals[mesh.polygons[i]]) > 0;
     sheet_of[i] = 2 * mesh.polygons[i] + (front ? 0 : 1);
     ++starts[sheet_of[i] + 1];
   }
@@ -211,7 +220,16 @@ Eigen::Array2i PatchLocator::Grid::last_cell(const Eigen::Array2d& at) const {
 }
 
 int PatchLocator::patch_at(int triangle, bool front, const Vec3& point) const {
-  const Sheet& sheet = sheet_of(triangle, front);
+  const int patch = patch_on(sheet_of(triangle, front), point);
+  if (patch >= 0) return patch;
+  for (const CoplanarSheets::Sheet& sheet : coplanar_.at(mesh_.occluders.polygons[triangle], point)) {
+    const int other = patch_on(sheets_[2 * sheet.polygon + (front != sheet.opposed ? 0 : 1)], point);
+    if (other >= 0) return other;
+  }
+  return -1;
+}
+
+int PatchLocator::patch_on(const Sheet& sheet, const Vec3& point) const {
   const auto near = [&](const Grid& grid, auto&& visit) {
     const Eigen::Array2d at = grid.at(point);
     const auto visit_cell = [&](int i, int j) {

@@ -3,25 +3,27 @@
 #include <span>
 #include <vector>
 
+#include "coplanar_sheets.h"
 #include "luxel/patch_mesh.h"
 #include "luxel/ray_scene.h"
 
 namespace luxel {
 
 /// Which patch lies at a point of a polygon of the occluders, on the side asked for: the way from what a ray
-/// met back to the patches. Sheets that coincide are told apart by the side. Each side of each polygon has
-/// loose grids (Ulrich 2000), one for each size of its patches: a patch stands in the cell that its middle
-/// lies in, cells are no smaller than patches, so that four of them hold what may lie at a point.
-/// Cost: 30 ns a look-up in the caches, 0.2 us at a million patches, 0.1 us a patch to make; memory about 50
-/// bytes a patch and 16 a polygon.
+/// met back to the patches. Sheets that coincide are told apart by the side; where polygons overlap in part,
+/// either may be met and stands for both. Each side of each polygon has loose grids (Ulrich 2000), one for
+/// each size of its patches: a patch stands in the cell that its middle lies in, cells are no smaller than
+/// patches, so that four of them hold what may lie at a point. Cost: 30 ns a look-up in the caches, 0.2 us at
+/// a million patches, 0.1 us a patch to make; memory about 50 bytes a patch and 16 a polygon.
 class PatchLocator {
  public:
   /// The mesh must outlive the locator.
   explicit PatchLocator(const PatchMesh& mesh);
 
   /// The patch whose front is the `front` (or back) side of triangle `triangle` of mesh.occluders at `point`
-  /// [m], or -1: that side is the back of whatever stands there. Points off every outline by less than 1e-6
-  /// of the scene's diagonal belong to the nearest patch.
+  /// [m], or that of a polygon which overlaps it there, on the same side; or -1: that side is the back of
+  /// whatever stands there. Points off every outline by less than 1e-6 of the scene's diagonal belong to the
+  /// nearest patch.
   int patch_at(int triangle, bool front, const Vec3& point) const;
   /// The same for what many rays met, -1 for those that met nothing; memory is called for in time.
   /// @param points  where they met it [m]
@@ -55,6 +57,7 @@ class PatchLocator {
   };
   struct Box;
 
+  int patch_on(const Sheet& sheet, const Vec3& point) const;
   const Sheet& sheet_of(int triangle, bool front) const {
     return sheets_[2 * mesh_.occluders.polygons[triangle] + (front ? 0 : 1)];
   }
@@ -65,6 +68,7 @@ class PatchLocator {
   const PatchMesh& mesh_;
   double tolerance_ = 0;       // [m]
   std::vector<Sheet> sheets_;  // 2 polygon + (front ? 0 : 1)
+  CoplanarSheets coplanar_;
   std::vector<Grid> grids_;
   std::vector<Outline> outlines_;
 };

@@ -128,8 +128,45 @@ TEST(Program, NotConvergedIsStatusOneAndTheResultsAreWritten) {
                                  "--json", "-o", folder.path("a.csv")});
 
   EXPECT_EQ(outcome.status, 1);
-  EXPECT_EQ(json::parse(outcome.out)["solver"]["converged"], false);
+  const json report = json::parse(outcome.out);
+  EXPECT_EQ(report["solver"]["converged"], false);
+  EXPECT_NE(
+      report["scene"]["warnings"].back().get<std::string>().find("did not converge to a relative residual"),
+      std::string::npos);
   EXPECT_EQ(csv_column(folder.read("a.csv"), "B_r").size(), 6u);
+}
+
+// A lamp over a white floor that lies there twice, as-is: half of what leaves the lamp's front to the floor
+// is counted twice, and rows say so.
+TEST(Program, AccuracyNotReachedIsStatusOneAndSaysByHowMuch) {
+  const Folder folder;
+  const std::string mesh = folder.write("twice.obj",
+                                        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
+                                        "v 0.1 0 0\nv 1.1 0 0\nv 1.1 1 0\nv 0.1 1 0\n"
+                                        "v 0 0 1\nv 0 1 1\nv 1 1 1\nv 1 0 1\n"
+                                        "usemtl floor\nf 1 2 3 4\nf 5 6 7 8\nusemtl lamp\nf 9 10 11 12\n");
+  const std::string scene = folder.write("scene.json", R"({"mesh": "twice.obj", "materials": {
+      "floor": {"reflectance": 0.5}, "lamp": {"reflectance": 0.5, "exitance": 1}}})");
+
+  for (const std::string command : {"solve", "factors"}) {
+    const Outcome kept = luxel({command, scene, "--as-is", "--json"});
+    const Outcome cut = luxel({command, scene, "--patches", "200", "--json"});
+
+    EXPECT_EQ(kept.status, 1) << command;
+    EXPECT_NE(kept.err.find("luxel: warning: 1 face lies in part or all in the same plane"),
+              std::string::npos);
+    EXPECT_NE(kept.err.find("light counts twice"), std::string::npos) << kept.err;
+    EXPECT_NE(kept.err.find("luxel: warning: the accuracy asked, 0.001, was not reached: "),
+              std::string::npos)
+        << kept.err;
+    EXPECT_NE(kept.err.find("material \"lamp\""), std::string::npos) << kept.err;
+    EXPECT_EQ(cut.status, 0) << command << cut.err;
+    EXPECT_EQ(cut.err.find("not reached"), std::string::npos) << cut.err;
+    const json report = json::parse(cut.out);
+    EXPECT_NEAR(report["scene"]["area"].get<double>(), 2.1, 1e-12);
+    EXPECT_NEAR(report["scene"]["overlap_area"].get<double>(), 0.9, 1e-12);
+    EXPECT_EQ(report["scene"]["overlapping_faces"], 1);
+  }
 }
 
 TEST(Program, CtrlCStopsItWithNothingWritten) {

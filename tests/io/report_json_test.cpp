@@ -13,7 +13,7 @@ using Json = nlohmann::json;
 Report solved() {
   Report report;
   report.run = {"1.2.3", "solve", 2};
-  report.scene = {"room.obj", 12, 8, 1, 24, true, 1, {"one warning"}};
+  report.scene = {"room.obj", 12, 8, 1, 24, true, 1, {"one warning"}, 3, 0.25};
   report.patches = 1234567;
   report.transport.emplace();
   report.transport->kind = "dense";
@@ -48,7 +48,7 @@ TEST(ReportJson, HoldsEveryFigureUnderItsName) {
 
   EXPECT_EQ(document["luxel"], Json::parse(R"({"version": "1.2.3", "command": "solve", "threads": 2})"));
   EXPECT_EQ(document["scene"], Json::parse(R"({"file": "room.obj", "faces": 12, "vertices": 8, "materials": 1,
-      "area": 24.0, "closed": true, "enclosures": 1, "warnings": ["one warning"]})"));
+      "area": 24.0, "overlap_area": 0.25, "overlapping_faces": 3, "closed": true, "enclosures": 1, "warnings": ["one warning"]})"));
   EXPECT_EQ(document["operator"]["bytes"], 3'000'000'000);
   EXPECT_EQ(document["operator"]["row_sum_error"]["max"], 0.1);
   EXPECT_EQ(document["solver"]["relative_residual"].get<double>(), 1.0 / 3);  // the same bits

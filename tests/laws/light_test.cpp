@@ -37,6 +37,30 @@ TEST(Light, IsEverywhereTheSameInAWhiteFurnace) {
   }
 }
 
+// A room of 2 x 2 x 1 whose floor and ceiling are two sheets each, with a strip of 0.4 x 2 in common.
+TEST(Light, CountsOnceWhereFacesOverlap) {
+  using Sides = Room::Sides;
+  for (const double rho : {0.5, 0.9}) {
+    const Finish white = finish(rho, 1);
+    Room room;
+    room.box({0, 0, 0}, {2, 2, 1}, true, Sides{std::nullopt, std::nullopt, white, white, white, white});
+    for (const auto& [low, high] : {std::pair(0.0, 1.2), std::pair(0.8, 2.0)}) {
+      room.box({low, 0, 0}, {high, 2, 1}, true,
+               Sides{white, white, std::nullopt, std::nullopt, std::nullopt, std::nullopt});
+    }
+
+    const Lit furnace = lit(room.scene());
+
+    ASSERT_TRUE(furnace.enclosures.closed);
+    EXPECT_NEAR(total_area(furnace.mesh), 16, 1e-12);
+    const std::vector<double> rows = row_sums(form_factors(furnace.mesh).exchange_areas, furnace.mesh.areas);
+    for (int i = 0; i < furnace.mesh.size(); ++i) {
+      EXPECT_NEAR(rows[i], 1, 2e-3) << i;  // before any closure, at the default accuracy: largest <= 2e-3
+      EXPECT_NEAR(furnace.light.radiosity(i, 0) * (1 - rho), 1, 1e-8) << "rho " << rho << ", patch " << i;
+    }
+  }
+}
+
 TEST(Light, IsAbsorbedOrEscapes) {
   for (const bool window : {false, true}) {
     const Lit room = lit(furnished_room(window).scene());

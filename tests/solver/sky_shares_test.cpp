@@ -116,16 +116,16 @@ Enclosures one_open_enclosure(int size) {
 }
 
 TEST(TakeSkyShares, KeepsWhatIsClosedOrSeesBacksOrWasNotAssembled) {
-  Enclosures found = one_open_enclosure(4);
-  found.count = 2;
-  found.enclosure[1] = 1;
-  found.enclosure_closed.push_back(1);
-  found.back_share[2] = 0.1;
+  Enclosures found = one_open_enclosure(5);
+  found.count = 3;
+  found.enclosure = {0, 1, 2, 2, 0};
+  found.enclosure_closed = {0, 1, 0};
+  found.back_share[2] = 0.1;  // and so patch 3 may see a back too
 
-  take_sky_shares(found, {0.25, 0.25, 0.25, std::numeric_limits<double>::quiet_NaN()}, 1e-3);
+  take_sky_shares(found, {0.25, 0.25, 0.25, 0.25, std::numeric_limits<double>::quiet_NaN()}, 1e-3);
 
-  EXPECT_EQ(found.open_share, (std::vector<double>{0.25, 0.5, 0.5, 0.5}));
-  EXPECT_EQ(found.share_rays, (std::vector<int>{0, 256, 256, 256}));
+  EXPECT_EQ(found.open_share, (std::vector<double>{0.25, 0.5, 0.5, 0.5, 0.5}));
+  EXPECT_EQ(found.share_rays, (std::vector<int>{0, 256, 256, 256, 256}));
   EXPECT_LT(found.share_error[0], 1e-3);
   EXPECT_THROW(take_sky_shares(found, {0.25}, 1e-3), std::invalid_argument);
 }

@@ -30,6 +30,8 @@ struct Report {
     bool closed = false;  ///< no direction from the front of any patch escapes or meets a back
     int enclosures = 0;
     std::vector<std::string> warnings;
+    std::int64_t overlapping_faces = 0;  ///< that an earlier face covers in part on the same side
+    double overlap_area = 0;             ///< what is covered of them [m2]
   };
 
   struct Operator {

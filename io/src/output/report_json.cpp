@@ -28,6 +28,8 @@ Json json(const Report::Scene& scene) {
           {"vertices", scene.vertices},
           {"materials", scene.materials},
           {"area", number(scene.area)},
+          {"overlap_area", number(scene.overlap_area)},
+          {"overlapping_faces", scene.overlapping_faces},
           {"closed", scene.closed},
           {"enclosures", scene.enclosures},
           {"warnings", scene.warnings}};

@@ -115,6 +115,11 @@ std::string summary(const Report& report) {
                      (scene.vertices == 1 ? " vertex" : " vertices") + ", " +
                      count(scene.materials, "material") + ", " + number(scene.area, "%.6g") + " m2, " +
                      (scene.closed ? "closed" : "open") + ", " + count(scene.enclosures, "enclosure"));
+  if (scene.overlapping_faces > 0) {
+    table.line("overlaps", count(scene.overlapping_faces, "face") + ", " +
+                               number(scene.overlap_area, "%.6g") +
+                               " m2 covered by earlier faces on the same side");
+  }
   table.line("patches", count(report.patches));
   if (report.partial) table.line("PARTIAL", "stopped before it was solved; files hold what was there");
   if (report.transport) add(table, *report.transport);

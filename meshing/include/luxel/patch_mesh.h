@@ -19,6 +19,7 @@ struct Occluders {
       triangles;              ///< indices into `vertices`, counter-clockwise seen from the front
   std::vector<int> polygons;  ///< for each triangle the flat polygon that it is part of, from 0
   int polygon_count = 0;
+  std::vector<std::array<int, 2>> coplanar;  ///< polygons that overlap in one plane, ascending pairs
 };
 
 /// What meshing did and how good the patches are; printed by `luxel inspect` and `luxel solve`.
@@ -37,7 +38,9 @@ struct MeshReport {
   int imprinted_edges = 0;       ///< contact edges cut into the polygon that they lie on
   int degenerate_faces = 0;      ///< of zero area: no patch
   int duplicate_faces = 0;       ///< same corners and same side: merged
-  int split_faces = 0;           ///< not a flat convex triangle or quad: split
+  int overlapping_faces = 0;     ///< that an earlier face covers in part, in the same plane on the same side
+  double overlap_area = 0;  ///< the parts covered [m2]: cut away, but for as_is, where light counts twice
+  int split_faces = 0;      ///< not a flat convex triangle or quad: split
 };
 
 /// Flat convex patches, each a triangle or a quad, with what the solver needs of them. Immutable once made.

@@ -40,9 +40,10 @@ struct Enclosures {
 Enclosures find_enclosures(const PatchMesh& mesh, const RayScene& occluders, int rays_per_patch = 256,
                            const Progress& progress = {}, double share_accuracy = 0);
 
-/// Takes the shares of sky from form factors of this accuracy, for patches of open enclosures of which no ray
+/// Takes the shares of sky from form factors of this accuracy, for patches of open enclosures in which no ray
 /// met a back, but where a share is not a number: the error of a share of sky is then at most 0.7 accuracy
-/// sqrt(share), as of every sum of form factors.
+/// sqrt(share), as of every sum of form factors. Where one patch sees a back, another may see one of which no
+/// ray of its own told.
 void take_sky_shares(Enclosures& enclosures, const std::vector<double>& sky_shares, double accuracy);
 
 /// What patch i's row sum may differ from 1 - open_share - back_share by and be right, at a chance of 1e-2

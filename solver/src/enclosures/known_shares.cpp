@@ -28,9 +28,14 @@ void take_sky_shares(Enclosures& enclosures, const std::vector<double>& sky_shar
   if (sky_shares.size() != enclosures.enclosure.size()) {
     throw std::invalid_argument("take_sky_shares: as many shares as patches are needed");
   }
+  // where anyone sees a back, who does not may see a small one
+  std::vector<char> shows_backs(enclosures.count, 0);
   for (std::size_t i = 0; i < sky_shares.size(); ++i) {
-    if (std::isnan(sky_shares[i]) || enclosures.enclosure_closed[enclosures.enclosure[i]] ||
-        enclosures.back_share[i] > 0)
+    if (enclosures.back_share[i] > 0) shows_backs[enclosures.enclosure[i]] = 1;
+  }
+  for (std::size_t i = 0; i < sky_shares.size(); ++i) {
+    const int enclosure = enclosures.enclosure[i];
+    if (std::isnan(sky_shares[i]) || enclosures.enclosure_closed[enclosure] || shows_backs[enclosure])
       continue;
     enclosures.open_share[i] = sky_shares[i];
     enclosures.share_error[i] = ray_share * accuracy * std::sqrt(sky_shares[i]);

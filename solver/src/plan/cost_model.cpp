@@ -29,7 +29,7 @@ constexpr double applications_besides = 3;
 
 // Starting the program; reading and cutting, and writing nothing [s a patch].
 constexpr double start = 0.02;
-constexpr double mesh_step = 3e-6;
+constexpr double mesh_step = 1.3e-6;
 
 // Rays of find_enclosures().
 constexpr double enclosure_ray = 3e-7;
@@ -66,7 +66,7 @@ constexpr double patch_bytes = 2500;
 
 // A ray of a gather: against few triangles, for each doubling of them, and from where they no longer fit the
 // caches.
-constexpr double gather_ray = 30e-9, ray_doubling = 2e-9;
+constexpr double gather_ray = 24e-9, ray_doubling = 2e-9;
 constexpr double few_triangles = 64, cached_triangles = 1e5, beyond_cache = 0.5;
 
 // A ray of the error bar goes alone, in double precision, and ends in memory of its own; so many times a ray
@@ -75,13 +75,14 @@ constexpr double probe_ray = 7, probe_patch = 1.2e-7;
 constexpr double cached_patches = 3e4, probe_beyond_cache = 0.1;
 
 // A patch besides its rays: packets, pictures, direct light, iteration.
-constexpr double gather_patch = 4e-6;
+constexpr double gather_patch = 3e-6;
 
-// Clusters and passes over them [s a patch], and pairs of clusters [s, bytes; times root of patches times
-// accuracy^-order]; or, once their number is known, all by what they hold [s a byte] and ask [s a ray].
-constexpr double cluster_patch = 1.3e-5, cluster_pairs = 2.8e-5, cluster_order = 1.07;
-constexpr double block_byte = 1.5e-8, block_ray = 5e-8;
-constexpr double cluster_patch_bytes = 430, cluster_pair_bytes = 1900;
+// Clusters and passes over them [s a patch], and pairs of clusters [s; times patches^growth accuracy^-order];
+// or, once their number is known, all by what they hold [s a byte] and ask [s a ray]. Of their bytes the
+// pairs' grow as the root of the patches.
+constexpr double cluster_patch = 1.4e-6, cluster_pairs = 6.6e-4, cluster_growth = 0.22, cluster_order = 1.07;
+constexpr double block_byte = 1.5e-8, block_ray = 3e-8;
+constexpr double cluster_patch_bytes = 450, cluster_pair_bytes = 1200;
 
 // Mesh, fields and pictures of a gather [a patch], and its ray scene [a triangle].
 constexpr double gather_patch_bytes = 320, triangle_bytes = 230;
@@ -193,7 +194,8 @@ double gather_seconds(double patches, double rays_a_patch, double triangles) {
 }
 
 double hierarchical_seconds(double patches, double accuracy) {
-  return patches * cluster_patch + cluster_pairs * std::sqrt(patches) * std::pow(accuracy, -cluster_order);
+  return patches * cluster_patch +
+         cluster_pairs * std::pow(patches, cluster_growth) * std::pow(accuracy, -cluster_order);
 }
 
 double block_seconds(double bytes, double rays) {

@@ -5,10 +5,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "enclosures/cells.h"
-#include "enclosures/hemisphere_rays.h"
 #include "enclosures/shells.h"
 #include "enclosures/triangle_soup.h"
 #include "sampling/owen_sobol.h"
@@ -22,16 +20,8 @@ namespace {
 
 constexpr int lanes = GatherOperator::lanes;
 
-// Lost rays of a packet that are asked again before the rest is believed, unless one in so many proves wrong.
-constexpr int lost_for_certain = 4, wrong_among = 8;
-
-// Fresh directions tried for a ray of a closed enclosure that is lost for good: one in 10^6 of the rays
-// beside a crack, at most.
-constexpr int replacements = 8;
-
 // Streams of random numbers, all seeded by patch or packet.
-constexpr std::uint64_t own_stream = 0x67617468, shared_stream = 0x73686172, replacement_stream = 0x7265706c,
-                        single_stream = 0x73696e67, sample_stream = 0x73616d70;
+constexpr std::uint64_t own_stream = 0x67617468, shared_stream = 0x73686172, sample_stream = 0x73616d70;
 
 // Rays that trace_sample() can be asked for.
 constexpr int most_rays_sampled = 1024;
@@ -83,15 +73,12 @@ std::vector<std::int32_t> closed_cells(const PatchMesh& mesh, const RayScene& oc
 
 }  // namespace
 
-PatchNet::PatchNet(int count) : blocks_((count + lanes - 1) / lanes), words_(net_words(count)) {}
-
-GatherRays::GatherRays(const PatchMesh& mesh, const RayScene& occluders, int count, std::uint64_t seed,
-                       int most)
+GatherRays::GatherRays(const PatchMesh& mesh, const RayScene& occluders, int count, std::uint64_t seed)
     : mesh_(mesh),
       occluders_(occluders),
       seed_(seed),
       packets_(packets_of(mesh)),
-      map_(mesh, HitMap::texels_for(mesh.size(), std::max(count, most))),
+      map_(mesh, HitMap::texels_for(mesh.size(), count)),
       enclosures_(closed_cells(mesh, occluders)) {
   scene_.embree = occluders.embree_scene();
   set_count(count);
@@ -106,11 +93,6 @@ GatherRays::GatherRays(const PatchMesh& mesh, const RayScene& occluders, int cou
 
 std::size_t GatherRays::bytes() const {
   return packets_.size() * sizeof(packets_[0]) + map_.bytes() + 4 * (words_.size() + enclosures_.size());
-}
-
-const PatchLocator& GatherRays::locator() const {
-  std::call_once(locator_made_, [this] { locator_ = std::make_unique<PatchLocator>(mesh_); });
-  return *locator_;
 }
 
 /// Calls for all that frame_of() will read: patch by patch it would wait for each.
@@ -188,10 +170,6 @@ void GatherRays::trace(const PacketScene& scene, const GatherOperator::Packet& p
   }
 }
 
-bool GatherRays::Certainty::enough() const {
-  return lost >= lost_for_certain && lost > wrong_among * found;
-}
-
 void GatherRays::trace(std::size_t packet, int first, int count, std::uint32_t* met) const {
   trace(scene_, packets_[packet], frame_of(packets_[packet], seed_), first, count, met);
 }
@@ -247,86 +225,6 @@ bool GatherRays::set_count(int count) {
   const std::uint32_t digits = lower_digits_;
   lower_digits_ = map_.triangles().size() > large_scene ? 0 : 0xffffffffu >> shared_digits(count);
   return lower_digits_ == digits;
-}
-
-void GatherRays::trace_patch(int patch, const PatchNet& net, std::uint64_t seed, std::uint32_t* met) const {
-  GatherOperator::Packet packet;
-  packet.fill(patch);
-  PacketFrame frame = frame_of(packet, seed_);
-  const std::uint64_t own = mixed_seed(seed ^ single_stream, patch);
-  for (int q = 0; q < 4; ++q) {
-    frame.seeds[q] = static_cast<std::uint32_t>(mixed_seed(own, q));
-    std::fill_n(frame.turned[q], lanes, 0u);
-  }
-  PacketScene scene = scene_;
-  scene.words = net.words_.data();
-  scene.lane_words = true;
-  trace(scene, packet, frame, 0, net.blocks_, met);
-}
-
-void GatherRays::settle(const GatherOperator::Packet& packet, int first,
-                        std::span<const DoubtfulRay> doubtful, std::uint32_t* met,
-                        Certainty& certainty) const {
-  int asked = 0;
-  for (const DoubtfulRay& ray : doubtful) {
-    const int patch = packet[ray.lane];
-    const bool closed = enclosures_[patch] >= 0;
-    if (ray.lost && !closed && certainty.enough()) continue;
-    std::uint32_t& end = met[static_cast<std::size_t>(ray.ray) * lanes + ray.lane];
-    end = settled(patch, ray);
-    ++asked;
-    if (ray.lost) ++(end == static_cast<std::uint32_t>(mesh_.size()) ? certainty.lost : certainty.found);
-    if (closed && end == static_cast<std::uint32_t>(mesh_.size())) {
-      end = replaced(patch, mixed_seed(seed_ ^ replacement_stream, first + ray.ray));
-    }
-  }
-  asked_twice_ += asked;
-}
-
-/// The patch that a ray meets, in double precision; -1 for nothing, or in a closed enclosure for a patch of
-/// another.
-int GatherRays::patch_met(int patch, const Vec3& origin, const Vec3& direction) const {
-  RayScene::Hit hit;
-  occluders_.intersect({&origin, 1}, {&mesh_.normals[patch], 1}, {&direction, 1}, {&hit, 1});
-  if (hit.primitive < 0) return -1;
-  const int met = locator().patch_at(hit.primitive, hit.front, origin + hit.distance * direction);
-  if (met < 0) return -1;
-  const bool leaked = enclosures_[patch] >= 0 && enclosures_[met] != enclosures_[patch];
-  return leaked ? -1 : met;
-}
-
-/// The patch at a hit whose texel does not know; -1 as in patch_met().
-int GatherRays::patch_hit(int patch, const DoubtfulRay& ray) const {
-  const auto& [a, b, c] = mesh_.occluders.triangles[ray.triangle];
-  const Vec3& corner = mesh_.occluders.vertices[a];
-  const Vec3 point = corner + ray.u * (mesh_.occluders.vertices[b] - corner) +
-                     ray.v * (mesh_.occluders.vertices[c] - corner);
-  const int met = locator().patch_at(ray.triangle, ray.front, point);
-  if (met < 0) return -1;
-  return enclosures_[patch] >= 0 && enclosures_[met] != enclosures_[patch] ? -1 : met;
-}
-
-std::uint32_t GatherRays::settled(int patch, const DoubtfulRay& ray) const {
-  int met = ray.lost ? -1 : patch_hit(patch, ray);
-  if (met < 0) {
-    const auto vector = [](const float* x) { return Vec3(x[0], x[1], x[2]); };
-    Vec3 origin = vector(ray.origin) / occluders_.scale() + occluders_.centre();
-    const Vec3& normal = mesh_.normals[patch];
-    origin -= normal.dot(origin - mesh_.centroids[patch]) * normal;
-    met = patch_met(patch, origin, vector(ray.direction).normalized());
-  }
-  return static_cast<std::uint32_t>(met >= 0 ? met : mesh_.size());
-}
-
-/// What some other ray of the patch meets.
-std::uint32_t GatherRays::replaced(int patch, std::uint64_t seed) const {
-  const HemisphereRays rays =
-      hemisphere_rays(mesh_, patch, replacements, mixed_seed(seed, patch), outline_margin(occluders_));
-  for (int k = 0; k < replacements; ++k) {
-    const int met = patch_met(patch, rays.origins[k], rays.directions[k]);
-    if (met >= 0) return static_cast<std::uint32_t>(met);
-  }
-  return static_cast<std::uint32_t>(mesh_.size());
 }
 
 }  // namespace luxel

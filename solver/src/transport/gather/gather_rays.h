@@ -14,19 +14,6 @@
 
 namespace luxel {
 
-/// Points of a net for the rays of a single patch: sixteen at a time, which is what trace_patch() takes.
-class PatchNet {
- public:
-  /// @param count  is rounded up to a multiple of 16
-  explicit PatchNet(int count);
-  int count() const { return blocks_ * GatherOperator::lanes; }
-
- private:
-  friend class GatherRays;
-  int blocks_;
-  std::vector<std::uint32_t> words_;  // blocks x 4 x lanes
-};
-
 /// The rays of a gather: for each packet of patches the first `count` points of one scrambled net, traced in
 /// any number of goes. Safe from many threads. The mesh and the ray scene must outlive it.
 ///
@@ -36,8 +23,7 @@ class PatchNet {
 class GatherRays {
  public:
   /// @param count  rays from each patch in all; the net's digits that a packet shares follow from it
-  /// @param most   rays from one patch that the map from hits to patches shall be fine enough for
-  GatherRays(const PatchMesh& mesh, const RayScene& occluders, int count, std::uint64_t seed, int most = 0);
+  GatherRays(const PatchMesh& mesh, const RayScene& occluders, int count, std::uint64_t seed);
 
   /// Another number of rays from each patch. Tells whether what was traced so far still belongs to the same
   /// nets; else trace() gives others from now on.
@@ -65,10 +51,6 @@ class GatherRays {
   /// trace() for the packets of these frames. The rows of patches met are called into the cache.
   void trace_together(std::size_t first_packet, std::span<const PacketFrame> frames, int first, int count,
                       std::uint32_t* met, PatchRows rows = {}) const;
-
-  /// What the rays of one net of `net`'s points from one patch meet, as trace() tells it. Other seeds give
-  /// independent nets; none depends on the packets' own rays.
-  void trace_patch(int patch, const PatchNet& net, std::uint64_t seed, std::uint32_t* met) const;
 
   /// Rays settled in double precision so far.
   std::int64_t asked_twice() const { return asked_twice_; }

@@ -35,13 +35,11 @@ void Trace(const PacketScene& scene, const PacketFrame& frame, int first, int co
     Flight& last = flights[(q + 1) % 2];
     if (q >= 2) Land(scene, frame, flight, q - 2, met, doubtful);
     const int at = first + q;
-    if (scene.lane_words || q == 0 || at % lanes == 0) {
-      points.Scramble(scene.words, scene.lane_words ? at : at / lanes, frame.seeds);
-    }
+    if (q == 0 || at % lanes == 0) points.Scramble(scene.words, at / lanes, frame.seeds);
     RTCRay16& ray = flight.rays.ray;
     float* const origins[3] = {ray.org_x, ray.org_y, ray.org_z};
     float* const directions[3] = {ray.dir_x, ray.dir_y, ray.dir_z};
-    StartRays(points, scene.lane_words ? -1 : at % lanes, frame, origins, directions);
+    StartRays(points, at % lanes, frame, origins, directions);
     ResetHits(flight.rays);
     if (q >= 1) {
       for (int k = 0; k < lanes; k += step) FindTexels(scene, k, last);

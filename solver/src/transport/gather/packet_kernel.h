@@ -41,7 +41,6 @@ struct PatchRows {
 struct PacketScene {
   void* embree = nullptr;                ///< RTCScene
   const std::uint32_t* words = nullptr;  ///< net_words()
-  bool lane_words = false;               ///< each lane has a point of the net for itself
   const HitMap* map = nullptr;
   std::int32_t nothing = 0;  ///< what a lost ray met
   const std::int32_t* enclosures =

@@ -159,8 +159,7 @@ HWY_INLINE void StartPoints(const PacketFrame& frame, Reals s, Reals t, int k, f
   }
 }
 
-// Where lanes start, and which way: all with one point of the net, or with `point` -1 each with one of its
-// own.
+// Where lanes start, and which way: all with one point of the net.
 HWY_INLINE void StartRays(const NetPoints& points, int point, const PacketFrame& frame,
                           float* const origins[3], float* const directions[3]) {
   const Real d;
@@ -168,8 +167,7 @@ HWY_INLINE void StartRays(const NetPoints& points, int point, const PacketFrame&
   for (size_t lane = 0; lane < lanes; lane += hn::Lanes(w)) {
     const int k = static_cast<int>(lane);
     const auto number = [&](int q) {
-      const Words shared = point < 0 ? hn::Load(w, points.rows[q] + k) : hn::Set(w, points.rows[q][point]);
-      return Fraction(hn::Xor(shared, hn::Load(w, frame.turned[q] + k)));
+      return Fraction(hn::Xor(hn::Set(w, points.rows[q][point]), hn::Load(w, frame.turned[q] + k)));
     };
     const Reals s = number(0), t = number(1);
     switch (frame.shape) {

@@ -110,13 +110,6 @@ class Assembly {
                deferred);
   }
 
-  // Of all that lies in one plane with the end and sends as it does.
-  double plane_area(const BlockEnd& end) const {
-    const int position =
-        end.single ? end.cluster - hierarchy_.cluster_count() : hierarchy_.clusters[end.cluster].begin;
-    return end.bounds.planar ? hierarchy_.groups[hierarchy_.group[position]].area : end.area;
-  }
-
   // Divides the one end that is said to be too large, or the larger of both; false if that is a single patch.
   // Horizons and near occluders change the kernel across an end alike for all parts of the other, whose
   // errors add up.
@@ -176,12 +169,6 @@ class Assembly {
     return end.bounds.planar ? corner_error(end, other, at_nodes) : kink_error * share;
   }
 
-  static std::array<double, 16> transposed(const std::array<double, 16>& values) {
-    std::array<double, 16> turned;
-    for (int k = 0; k < 16; ++k) turned[4 * (k & 3) + (k >> 2)] = values[k];
-    return turned;
-  }
-
   void between(const BlockEnd& r, const BlockEnd& s, const HidingCandidates& inherited, BlockList& list,
                std::vector<Task>* deferred) const {
     const Span over_r = heights_over(r.bounds, s.bounds);
@@ -232,12 +219,13 @@ class Assembly {
       return;
     }
     const double nearby = std::numbers::pi * apart * apart;
-    const bool kinked_r =
-        straddling_r && !r.single &&
-        kink(r, s, kernel.values, share) * std::min(nearby, plane_area(s)) > kink_share * coherent_;
-    const bool kinked_s = straddling_s && !s.single &&
-                          kink(s, r, transposed(kernel.values), share) * std::min(nearby, plane_area(r)) >
+    const bool kinked_r = straddling_r && !r.single &&
+                          kink(r, s, kernel.values, share) * std::min(nearby, plane_area(hierarchy_, s)) >
                               kink_share * coherent_;
+    const bool kinked_s =
+        straddling_s && !s.single &&
+        kink(s, r, kernel.from_other_end(), share) * std::min(nearby, plane_area(hierarchy_, r)) >
+            kink_share * coherent_;
     if (divide_one(r, s, kinked_r, kinked_s, candidates, list, deferred)) return;
     const double smooth = coherent_ / rough_error;
     if (divide_one(r, s, r.roughness > smooth, s.roughness > smooth, candidates, list, deferred)) return;

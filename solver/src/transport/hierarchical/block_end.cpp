@@ -103,6 +103,19 @@ BlockEnd block_end(const PatchHierarchy& hierarchy, int cluster, bool with_shaft
   return end;
 }
 
+double plane_area(const PatchHierarchy& hierarchy, const BlockEnd& end) {
+  if (!end.bounds.planar) return end.area;
+  const int position =
+      end.single ? end.cluster - hierarchy.cluster_count() : hierarchy.clusters[end.cluster].begin;
+  return hierarchy.groups[hierarchy.group[position]].area;
+}
+
+std::array<double, 16> BlockKernel::from_other_end() const {
+  std::array<double, 16> turned;
+  for (int k = 0; k < 16; ++k) turned[4 * (k & 3) + (k >> 2)] = values[k];
+  return turned;
+}
+
 BlockKernel block_kernel(const BlockEnd& r, const BlockEnd& s) {
   BlockKernel kernel;
   for (int a = 0; a < 4; ++a) {

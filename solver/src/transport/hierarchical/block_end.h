@@ -28,12 +28,18 @@ struct BlockEnd {
 /// @param with_shaft  there are occluders: `shaft` is filled
 BlockEnd block_end(const PatchHierarchy& hierarchy, int cluster, bool with_shaft);
 
+/// Of all that lies in one plane with the end and sends as it does; of a curved end its own. Working units.
+double plane_area(const PatchHierarchy& hierarchy, const BlockEnd& end);
+
 /// Kernel cos cos / (pi d^2) between all nodes of two ends, [4 a + b]; 0 where either looks away.
 struct BlockKernel {
   alignas(32) std::array<double, 16> values;
   double largest = 0;
   double mean = 0;    ///< weighted by both ends' nodes
   double middle = 0;  ///< between the two middles: what interpolation from the nodes takes for the mean
+
+  /// The values as [4 b + a].
+  std::array<double, 16> from_other_end() const;
 };
 BlockKernel block_kernel(const BlockEnd& r, const BlockEnd& s);
 
