@@ -140,7 +140,8 @@ TEST(RunGathered, CastsNoRayFromTheDark) {
   expect_light_of_the_middle(run.light.solution, alone.light.solution);
   EXPECT_EQ(run.light.energy.emitted, alone.light.energy.emitted);
   EXPECT_EQ(run.light.energy.imbalance, alone.light.energy.imbalance);
-  EXPECT_EQ(run.light.operator_error->high, alone.light.operator_error->high);
+  // sums of the error bar are not the same to the last bit
+  EXPECT_NEAR(run.light.operator_error->high / alone.light.operator_error->high, 1, 1e-12);
   EXPECT_TRUE(mentions(run.left_out, "2 enclosures of 432 patches: nothing emits in them"));
   EXPECT_TRUE(mentions(run.left_out, "432 of 648 patches as senders and receivers"));
 }
@@ -222,7 +223,8 @@ TEST(RunHierarchical, MakesNoBlockOfTheDark) {
   EXPECT_EQ(run.hierarchical.blocks, alone.hierarchical.blocks);
   EXPECT_EQ(run.hierarchical.entries, alone.hierarchical.entries);
   expect_light_of_the_middle(run.light.solution, alone.light.solution);
-  EXPECT_EQ(run.light.operator_error->high, alone.light.operator_error->high);
+  // sums of the error bar are not the same to the last bit
+  EXPECT_NEAR(run.light.operator_error->high / alone.light.operator_error->high, 1, 1e-12);
   EXPECT_EQ(run.light.energy.absorbed, alone.light.energy.absorbed);
   EXPECT_TRUE(mentions(run.left_out, "432 of 648 patches as senders and receivers"));
   EXPECT_EQ(run.enclosures.count, 3);
