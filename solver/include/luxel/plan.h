@@ -33,7 +33,7 @@ std::optional<OperatorKind> operator_from_name(std::string_view name);
 
 /// What may be left out. Each can be switched off alone; the result is the same to the accuracy asked for.
 struct Savings {
-  bool dark_enclosures = true;  ///< enclosures without emission are not assembled, their light is exactly 0
+  bool dark_enclosures = true;      ///< enclosures without emission are left out, their light is exactly 0
   bool separate_enclosures = true;  ///< each enclosure is a system of its own, solved one after the other
   bool idle_occluders = true;       ///< polygons that cannot hide anything are dropped; none left: no ray
   bool channels = true;   ///< channels without emission are 0, those proportional to another are not solved
@@ -218,9 +218,10 @@ struct GatheredRun {
   std::vector<LeftOut> left_out;
 };
 
-/// The light of a scene by gathering, all patches in one system: accuracy and seed as of form_factors, method
-/// (neumann, gmres or automatic) and tolerance as of `solve`. Iterations are told with the radiosity of the
-/// whole mesh where all channels are solved, else null.
+/// The light of a scene by gathering, all patches in one system but those of closed enclosures without
+/// emission that the surfaces prove (savings.dark_enclosures): B = H = 0 there, row_sums are not numbers.
+/// Accuracy and seed as of form_factors, method (neumann, gmres or automatic) and tolerance as of `solve`.
+/// Iterations are told with the radiosity of the whole mesh.
 /// @throws SingularSystem; Cancelled; std::invalid_argument as solve_gathered() does
 GatheredRun run_gathered(const PatchMesh& mesh, const PlanOptions& options = {},
                          const PlanListener& listener = {});
@@ -233,8 +234,8 @@ struct HierarchicalRun {
   std::vector<LeftOut> left_out;
 };
 
-/// The light of a scene by clusters, all patches in one system: accuracy and seed as of form_factors, the
-/// rest as of `solve`.
+/// The light of a scene by clusters, all patches in one system but those that run_gathered() leaves out too:
+/// accuracy and seed as of form_factors, the rest as of `solve`.
 /// @throws SingularSystem; Cancelled; std::invalid_argument as solve_hierarchical() does
 HierarchicalRun run_hierarchical(const PatchMesh& mesh, const PlanOptions& options = {},
                                  const PlanListener& listener = {});

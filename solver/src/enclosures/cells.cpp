@@ -13,27 +13,11 @@ namespace luxel {
 
 namespace {
 
-// Looking for contacts takes time above proportion to the triangles; beyond these (curved meshes) rays
-// decide.
-constexpr int most_triangles = 30'000;
-
 // A side is covered when its patches have its area within this share: above rounding, below a slit of 1e-6.
 constexpr double covered_within = 1e-7;
 
 Vec3 area_vector(const Vec3& a, const Vec3& b, const Vec3& c) {
   return (b - a).cross(c - a) / 2;
-}
-
-/// Volume on the far side of each shell's free space, in working units: negative where the shell goes around
-/// it.
-std::vector<double> volumes(const TriangleSoup& soup, const Shells& shells) {
-  std::vector<double> volume(shells.count, 0.0);
-  for (int t = 0; t < soup.size(); ++t) {
-    const double cone = soup.corner(t, 0).dot(soup.corner(t, 1).cross(soup.corner(t, 2))) / 6;
-    volume[shells.shell[side_of(t, true)]] += cone;
-    volume[shells.shell[side_of(t, false)]] -= cone;
-  }
-  return volume;
 }
 
 constexpr int nothing = -1;
@@ -91,7 +75,7 @@ SidesByShell sides_by_shell(const TriangleSoup& soup, const Shells& shells) {
 /// @return false where some shell sees nothing but itself, and so its place is not known
 bool join_nested(const TriangleSoup& soup, const Shells& shells, const RayScene& scene,
                  const std::vector<char>& blurred, UnionFind& cells) {
-  const std::vector<double> volume = volumes(soup, shells);
+  const std::vector<double> volume = shell_volumes(soup, shells);
   const SidesByShell order = sides_by_shell(soup, shells);
   for (int k = 0; k < shells.count; ++k) {
     if (!blurred[k] && volume[k] < 0) continue;
@@ -109,6 +93,16 @@ bool join_nested(const TriangleSoup& soup, const Shells& shells, const RayScene&
 }
 
 }  // namespace
+
+std::vector<double> shell_volumes(const TriangleSoup& soup, const Shells& shells) {
+  std::vector<double> volume(shells.count, 0.0);
+  for (int t = 0; t < soup.size(); ++t) {
+    const double cone = soup.corner(t, 0).dot(soup.corner(t, 1).cross(soup.corner(t, 2))) / 6;
+    volume[shells.shell[side_of(t, true)]] += cone;
+    volume[shells.shell[side_of(t, false)]] -= cone;
+  }
+  return volume;
+}
 
 std::vector<char> lit_sides(const PatchMesh& mesh) {
   const Occluders& occluders = mesh.occluders;
@@ -133,7 +127,7 @@ std::vector<char> lit_sides(const PatchMesh& mesh) {
 
 Cells find_cells(const TriangleSoup& soup, const Shells& shells, const std::vector<char>& lit,
                  const RayScene& scene) {
-  const bool examined = soup.size() <= most_triangles;
+  const bool examined = soup.size() <= most_proven_triangles;
   std::vector<char> blurred(shells.count, !examined);
   for (const Rim& rim : shells.rims) blurred[shells.shell[side_of(rim.triangle, true)]] = 1;
   if (examined) {

@@ -9,6 +9,10 @@
 
 namespace luxel {
 
+/// Looking for contacts takes time above proportion to the triangles; beyond these (curved meshes) nothing is
+/// proven.
+inline constexpr int most_proven_triangles = 30'000;
+
 /// What the connections of the surfaces prove about the space that a patch looks into.
 enum class Proof {
   none,    ///< nothing: rims, contacts or crossings blur it
@@ -22,6 +26,10 @@ struct Cells {
   std::vector<Proof> proof;  ///< for each cell
   int count = 0;
 };
+
+/// Volume on the far side of each shell's free space, in working units: negative where the shell goes around
+/// it.
+std::vector<double> shell_volumes(const TriangleSoup& soup, const Shells& shells);
 
 /// @param lit  for each side of a triangle: patches cover it
 /// A shell of negative volume goes around its cell; any other floats in a cell whose other shells are what is

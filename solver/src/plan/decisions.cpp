@@ -54,11 +54,17 @@ std::optional<LeftOut> equal_unknowns(double unknowns) {
 
 }  // namespace
 
+LeftOut dark_senders(int groups, int dark, int all) {
+  return {count(groups, "enclosure") + " of " + patches(dark),
+          "nothing emits in them, so that their light is exactly 0",
+          count(dark) + " of " + patches(all) + " as senders and receivers"};
+}
+
 std::optional<LeftOut> dark_groups(int groups, int dark, int all) {
   if (groups == 0) return std::nullopt;
-  return LeftOut{count(groups, "enclosure") + " of " + patches(dark),
-                 "nothing emits in them, so that their light is exactly 0",
-                 count(pairs(all) - pairs(all - dark)) + " of " + count(pairs(all)) + " pairs of patches"};
+  LeftOut told = dark_senders(groups, dark, all);
+  told.saved = count(pairs(all) - pairs(all - dark)) + " of " + count(pairs(all)) + " pairs of patches";
+  return told;
 }
 
 std::optional<LeftOut> lone_patches(int lone) {

@@ -9,6 +9,8 @@
 namespace luxel {
 
 std::optional<LeftOut> dark_groups(int groups, int dark, int all);
+/// The same where patches are worked on one by one, not in pairs; of one group at least.
+LeftOut dark_senders(int groups, int dark, int all);
 std::optional<LeftOut> lone_patches(int lone);
 std::optional<LeftOut> pairs_between(const std::vector<SystemPlan>& systems);
 /// Systems in which nothing can hide anything.

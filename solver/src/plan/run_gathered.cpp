@@ -8,10 +8,12 @@
 #include "operator_error/coarse_exchange.h"
 #include "operator_error/strata.h"
 #include "plan/cost_model.h"
+#include "plan/dark_enclosures.h"
 #include "plan/decisions.h"
 #include "plan/error_bar.h"
 #include "plan/gathered_enclosures.h"
 #include "plan/solved_channels.h"
+#include "plan/with_dark.h"
 #include "transport/gather/gathered_light.h"
 
 namespace luxel {
@@ -62,13 +64,14 @@ GatherOptions gather_options(const PlanOptions& options) {
   return gather;
 }
 
-}  // namespace
+void enter(PlanStage stage, const PlanListener& listener) {
+  if (listener.on_stage) listener.on_stage(stage);
+}
 
-GatheredRun run_gathered(const PatchMesh& mesh, const PlanOptions& options, const PlanListener& listener) {
-  const auto enter = [&](PlanStage stage) {
-    if (listener.on_stage) listener.on_stage(stage);
-  };
-  enter(PlanStage::assembling);
+/// All patches in one system.
+GatheredRun gathered(const PatchMesh& mesh, const RayScene& occluders, const PlanOptions& options,
+                     const PlanListener& listener) {
+  const auto enter = [&](PlanStage stage) { luxel::enter(stage, listener); };
   const PatchField rho = reflectance(mesh), emitted = emission(mesh);
   const ChannelPlan channels = options.savings.channels ? plan_channels(rho, emitted, lossless_channels(rho))
                                                         : every_channel(static_cast<int>(rho.cols()));
@@ -77,7 +80,6 @@ GatheredRun run_gathered(const PatchMesh& mesh, const PlanOptions& options, cons
   note(run.left_out, dark_channels(channels, mesh.size()));
   note(run.left_out, equal_channels(channels, mesh.size()));
   if (options.savings.channels) note(run.left_out, black_patches(rho));
-  const RayScene occluders(mesh.occluders);
   if (channels.solved.empty()) {
     planned.solution = {emitted, PatchField::Zero(mesh.size(), rho.cols()), {}};
     planned.solution.report.method = Method::neumann;
@@ -86,7 +88,6 @@ GatheredRun run_gathered(const PatchMesh& mesh, const PlanOptions& options, cons
     planned.row_sums.assign(mesh.size(), std::numeric_limits<double>::quiet_NaN());
     run.enclosures = find_enclosures(mesh, occluders, least_rays, listener.progress);
     planned.energy = energy_of(mesh, rho, emitted, planned.solution, std::vector<double>(mesh.size(), 1.0));
-    enter(PlanStage::done);
     return run;
   }
 
@@ -146,7 +147,42 @@ GatheredRun run_gathered(const PatchMesh& mesh, const PlanOptions& options, cons
   planned.solution.irradiance =
       all_solved ? std::move(found.irradiance) : expanded(found.irradiance, channels);
   planned.energy = energy_of(mesh, rho, emitted, planned.solution, planned.row_sums);
-  enter(PlanStage::done);
+  return run;
+}
+
+/// The same without dark enclosures, whose patches cast no rays and are met by none.
+GatheredRun gathered_without(const DarkEnclosures& dark, const PatchMesh& mesh, const PlanOptions& options,
+                             const PlanListener& listener) {
+  GatheredRun run;
+  if (dark.others.empty()) {
+    run.light = light_of_none();
+  } else {
+    const PatchMesh part = sub_mesh(mesh, dark.others, dark.others_closed);
+    try {
+      run = gathered(part, RayScene(part.occluders), told_of_all(options, dark), listener);
+    } catch (const SingularSystem& singular) {
+      throw singular_among_all(singular, dark);
+    }
+  }
+  add_dark(run.light, dark);
+  run.enclosures = with_dark(run.enclosures, dark);
+  run.left_out.insert(run.left_out.begin(), dark_senders(dark.count, dark.patches, mesh.size()));
+  return run;
+}
+
+}  // namespace
+
+GatheredRun run_gathered(const PatchMesh& mesh, const PlanOptions& options, const PlanListener& listener) {
+  enter(PlanStage::assembling, listener);
+  GatheredRun run;
+  {
+    const RayScene occluders(mesh.occluders);
+    const DarkEnclosures dark =
+        options.savings.dark_enclosures ? dark_enclosures(mesh, occluders) : DarkEnclosures{};
+    run = dark.count > 0 ? gathered_without(dark, mesh, options, listener)
+                         : gathered(mesh, occluders, options, listener);
+  }
+  enter(PlanStage::done, listener);
   return run;
 }
 

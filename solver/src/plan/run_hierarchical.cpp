@@ -5,9 +5,11 @@
 #include "luxel/input_error.h"
 #include "luxel/plan.h"
 #include "plan/cost_model.h"
+#include "plan/dark_enclosures.h"
 #include "plan/decisions.h"
 #include "plan/error_bar.h"
 #include "plan/solved_channels.h"
+#include "plan/with_dark.h"
 
 namespace luxel {
 
@@ -32,16 +34,15 @@ Enclosures enclosures_of(const PatchMesh& mesh, const PlanOptions& options, cons
   return find_enclosures(mesh, occluders, rays, progress);
 }
 
-}  // namespace
+void enter(PlanStage stage, const PlanListener& listener) {
+  if (listener.on_stage) listener.on_stage(stage);
+}
 
-HierarchicalRun run_hierarchical(const PatchMesh& mesh, const PlanOptions& options,
-                                 const PlanListener& listener) {
-  const auto enter = [&](PlanStage stage) {
-    if (listener.on_stage) listener.on_stage(stage);
-  };
-  enter(PlanStage::assembling);
+/// All patches in one system.
+HierarchicalRun by_clusters(const PatchMesh& mesh, const RayScene& occluders, const PlanOptions& options,
+                            const PlanListener& listener) {
+  const auto enter = [&](PlanStage stage) { luxel::enter(stage, listener); };
   const PatchField rho = reflectance(mesh), emitted = emission(mesh);
-  const RayScene occluders(mesh.occluders);
   HierarchicalRun run;
   run.enclosures = enclosures_of(mesh, options, occluders, listener.progress);
   SolveOptions solving = options.solve;
@@ -77,7 +78,44 @@ HierarchicalRun run_hierarchical(const PatchMesh& mesh, const PlanOptions& optio
       if (!options.keep_partial) throw;
     }
   }
-  enter(PlanStage::done);
+  return run;
+}
+
+/// The same without dark enclosures, of which no cluster is made.
+HierarchicalRun by_clusters_without(const DarkEnclosures& dark, const PatchMesh& mesh,
+                                    const PlanOptions& options, const PlanListener& listener) {
+  HierarchicalRun run;
+  if (dark.others.empty()) {
+    run.light = light_of_none();
+  } else {
+    const PatchMesh part = sub_mesh(mesh, dark.others, dark.others_closed);
+    try {
+      run = by_clusters(part, RayScene(part.occluders), told_of_all(options, dark), listener);
+    } catch (const SingularSystem& singular) {
+      throw singular_among_all(singular, dark);
+    }
+  }
+  add_dark(run.light, dark);
+  run.hierarchical.closure = run.light.closure;
+  run.enclosures = with_dark(run.enclosures, dark);
+  run.left_out.insert(run.left_out.begin(), dark_senders(dark.count, dark.patches, mesh.size()));
+  return run;
+}
+
+}  // namespace
+
+HierarchicalRun run_hierarchical(const PatchMesh& mesh, const PlanOptions& options,
+                                 const PlanListener& listener) {
+  enter(PlanStage::assembling, listener);
+  HierarchicalRun run;
+  {
+    const RayScene occluders(mesh.occluders);
+    const DarkEnclosures dark =
+        options.savings.dark_enclosures ? dark_enclosures(mesh, occluders) : DarkEnclosures{};
+    run = dark.count > 0 ? by_clusters_without(dark, mesh, options, listener)
+                         : by_clusters(mesh, occluders, options, listener);
+  }
+  enter(PlanStage::done, listener);
   return run;
 }
 
