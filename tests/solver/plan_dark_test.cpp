@@ -140,7 +140,8 @@ TEST(RunGathered, CastsNoRayFromTheDark) {
   expect_light_of_the_middle(run.light.solution, alone.light.solution);
   EXPECT_EQ(run.light.energy.emitted, alone.light.energy.emitted);
   EXPECT_EQ(run.light.energy.imbalance, alone.light.energy.imbalance);
-  EXPECT_EQ(run.light.operator_error->high, alone.light.operator_error->high);
+  // the same rays, rounded about another centre
+  EXPECT_NEAR(run.light.operator_error->high, alone.light.operator_error->high, 1e-9);
   EXPECT_TRUE(mentions(run.left_out, "2 enclosures of 432 patches: nothing emits in them"));
   EXPECT_TRUE(mentions(run.left_out, "432 of 648 patches as senders and receivers"));
 }
