@@ -11,6 +11,7 @@
 #include "luxel/ray_scene.h"
 #include "meshing/scenes.h"
 #include "patch_locator.h"
+#include "transport/gather/hit_map.h"
 
 namespace luxel {
 namespace {
@@ -28,6 +29,23 @@ Scene room_with_pierced_block() {
   const Eigen::AngleAxisd turn(0.3, Vec3::UnitZ());
   for (std::size_t v = first; v < last; ++v) scene.vertices[v] = centre + turn * (scene.vertices[v] - centre);
   return scene;
+}
+
+TEST(CoplanarSheets, LeaveNoSideOfWhichTheMapIsSureThatNothingIsThere) {
+  const PatchMesh mesh = mesh_scene(room_with_pierced_block(), {.patches = 400});
+  const HitMap map(mesh);
+  std::vector<char> doubled(mesh.occluders.polygon_count, 0);
+  for (const auto& [p, q] : mesh.occluders.coplanar) doubled[p] = doubled[q] = 1;
+
+  int sure = 0;
+  for (std::size_t t = 0; t < mesh.occluders.triangles.size(); ++t) {
+    for (const bool front : {true, false}) {
+      const bool off = map.at(static_cast<int>(t), front, 0.3F, 0.3F) == HitMap::off_patches;
+      EXPECT_FALSE(off && doubled[mesh.occluders.polygons[t]]);
+      sure += off;
+    }
+  }
+  EXPECT_GT(sure, 0);
 }
 
 TEST(CoplanarSheets, AnswerForEachOtherWhereTheyOverlap) {

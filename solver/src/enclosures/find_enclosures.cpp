@@ -7,6 +7,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <span>
 #include <stdexcept>
 
 #include "enclosures/cells.h"
@@ -50,21 +51,25 @@ double margin_of(const RayScene& occluders) {
 /// What rays from one patch met, in order; joins the patch with those it sees.
 std::vector<Met> look_around(const PatchMesh& mesh, const RayScene& occluders, const PatchLocator& locator,
                              int patch, int count, UnionFind& sets) {
+  std::vector<Met> met(count);
+  const auto look = [&](const HemisphereRays& rays, std::span<const int> places, RayScene::Look how) {
+    const std::size_t some = rays.origins.size();
+    std::vector<RayScene::Hit> hits(some);
+    occluders.intersect(rays.origins, rays.normals, rays.directions, hits, how);
+    std::vector<Vec3> points(some);
+    for (std::size_t k = 0; k < some; ++k)
+      points[k] = rays.origins[k] + hits[k].distance * rays.directions[k];
+    const std::vector<int> seen = locator.patches_at(hits, points);
+    for (std::size_t k = 0; k < some; ++k) {
+      met[places.empty() ? k : places[k]] = seen[k] >= 0             ? Met::front
+                                            : hits[k].primitive >= 0 ? Met::back
+                                                                     : Met::nothing;
+      if (seen[k] >= 0) sets.join(patch, seen[k]);
+    }
+  };
   const HemisphereRays rays =
       hemisphere_rays(mesh, patch, count, mixed_seed(enclosure_stream, patch), margin_of(occluders));
-  std::vector<RayScene::Hit> hits(count);
-  occluders.intersect(rays.origins, rays.normals, rays.directions, hits, RayScene::Look::once);
-  std::vector<Met> met(count);
-  const auto classify = [&](int k) {
-    const RayScene::Hit& hit = hits[k];
-    if (hit.primitive < 0) return Met::nothing;
-    const Vec3 point = rays.origins[k] + hit.distance * rays.directions[k];
-    const int seen = locator.patch_at(hit.primitive, hit.front, point);
-    if (seen < 0) return Met::back;
-    sets.join(patch, seen);
-    return Met::front;
-  };
-  for (int k = 0; k < count; ++k) met[k] = classify(k);
+  look(rays, {}, RayScene::Look::once);
 
   // those that met no front are looked at again together
   HemisphereRays lost;
@@ -76,12 +81,7 @@ std::vector<Met> look_around(const PatchMesh& mesh, const RayScene& occluders, c
     lost.normals.push_back(rays.normals[k]);
     lost.directions.push_back(rays.directions[k]);
   }
-  std::vector<RayScene::Hit> second(places.size());
-  occluders.intersect(lost.origins, lost.normals, lost.directions, second, RayScene::Look::twice);
-  for (std::size_t k = 0; k < places.size(); ++k) {
-    hits[places[k]] = second[k];
-    met[places[k]] = classify(places[k]);
-  }
+  if (!places.empty()) look(lost, places, RayScene::Look::twice);
   return met;
 }
 

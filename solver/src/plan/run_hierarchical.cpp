@@ -2,6 +2,9 @@
 #include <limits>
 #include <utility>
 
+#include "enclosures/cells.h"
+#include "enclosures/shells.h"
+#include "enclosures/triangle_soup.h"
 #include "luxel/input_error.h"
 #include "luxel/plan.h"
 #include "plan/cost_model.h"
@@ -26,16 +29,25 @@ HierarchicalOptions hierarchical_options(const PlanOptions& options) {
   return hierarchical;
 }
 
+int rays_of_enclosures(int patches) {
+  return std::clamp(static_cast<int>(enclosure_rays / std::max(1, patches)), least_rays, most_rays);
+}
+
 Enclosures enclosures_of(const PatchMesh& mesh, const PlanOptions& options, const RayScene& occluders,
                          const Progress& progress) {
   if (options.savings.idle_occluders && convex_inside(mesh)) return planned_enclosures(mesh, options);
-  const int rays =
-      std::clamp(static_cast<int>(enclosure_rays / std::max(1, mesh.size())), least_rays, most_rays);
-  return find_enclosures(mesh, occluders, rays, progress);
+  return find_enclosures(mesh, occluders, rays_of_enclosures(mesh.size()), progress);
 }
 
 void enter(PlanStage stage, const PlanListener& listener) {
   if (listener.on_stage) listener.on_stage(stage);
+}
+
+/// Whether enclosures may take rays: the surfaces have free edges, or are too many to be looked at.
+bool may_need_rays(const PatchMesh& mesh, const PlanOptions& options) {
+  if (mesh.occluders.triangles.size() > most_proven_triangles) return true;
+  if (options.savings.idle_occluders && convex_inside(mesh)) return false;
+  return !find_shells(TriangleSoup(mesh.occluders, RayScene(mesh.occluders))).rims.empty();
 }
 
 /// All patches in one system.
@@ -123,6 +135,9 @@ Cost estimated_hierarchical_cost(const PatchMesh& mesh, const PlanOptions& optio
   const double patches = mesh.size();
   Cost cost;
   cost.cpu_seconds = mesh_seconds(patches) + hierarchical_seconds(patches, options.form_factors.accuracy);
+  if (may_need_rays(mesh, options)) {
+    cost.cpu_seconds += enclosure_seconds(patches * rays_of_enclosures(mesh.size()));
+  }
   if (options.error_bar) cost.cpu_seconds *= 1 + error_bar_share;
   cost.bytes = hierarchical_bytes(patches, options.form_factors.accuracy);
   return cost;

@@ -69,6 +69,11 @@ HitMap::HitMap(const PatchMesh& mesh, double texels_a_patch)
     side_of[i] = 2 * mesh.polygons[i] + (mesh.normals[i].dot(fronts[mesh.polygons[i]]) > 0 ? 0 : 1);
   }
   const Lists patches_of(side_of, 2 * polygons);
+  // of sheets that overlap in a plane a ray may be told of either: a side without patches has a picture too
+  // then, of doubt
+  std::vector<char> doubtful(polygons, 0);
+  for (const auto& [p, q] : occluders.coplanar) doubtful[p] = doubtful[q] = 1;
+  const auto has_picture = [&](int p, int side) { return doubtful[p] || !patches_of[2 * p + side].empty(); };
 
   std::vector<PlanePicture> pictures(polygons);
   std::vector<std::int32_t> first(polygons, 0);
@@ -84,7 +89,7 @@ HitMap::HitMap(const PatchMesh& mesh, double texels_a_patch)
     }
     first[p] = static_cast<std::int32_t>(total);
     for (int side = 0; side < 2; ++side) {
-      if (!patches_of[2 * p + side].empty()) total += pictures[p].texels();
+      if (has_picture(p, side)) total += pictures[p].texels();
     }
   }
   if (total >= std::numeric_limits<std::int32_t>::max()) {
@@ -98,9 +103,10 @@ HitMap::HitMap(const PatchMesh& mesh, double texels_a_patch)
     std::size_t drawn = first[p];
     for (int side = 0; side < 2; ++side) {
       const auto patches = patches_of[2 * p + side];
-      if (patches.empty()) continue;
+      if (!has_picture(p, side)) continue;
       const std::span<std::int32_t> texels(texels_.data() + drawn, picture.texels());
       drawn += picture.texels();
+      if (patches.empty()) continue;
       if (patches.size() == 1) {
         std::fill(texels.begin(), texels.end(), patches[0]);
       } else if (picture.grid) {
@@ -112,8 +118,7 @@ HitMap::HitMap(const PatchMesh& mesh, double texels_a_patch)
         }
       }
     }
-    const std::uint32_t sides =
-        (patches_of[2 * p].empty() ? 0 : front_side) | (patches_of[2 * p + 1].empty() ? 0 : back_side);
+    const std::uint32_t sides = (has_picture(p, 0) ? front_side : 0) | (has_picture(p, 1) ? back_side : 0);
     for (int t : triangles_of[p]) {
       Triangle& triangle = triangles_[t];
       triangle.size = static_cast<std::uint32_t>(picture.width) |

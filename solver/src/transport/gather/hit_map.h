@@ -11,9 +11,9 @@ namespace luxel {
 /// From what a ray met (a triangle of the occluders, its side, barycentric coordinates) to the patch there,
 /// by a picture of each polygon's side whose texels hold patch numbers: vector code can read it. Boundaries
 /// between patches are blurred by a texel at most; where that could lose a whole patch, or where another
-/// polygon stands between the two, the texel says `ask`, and PatchLocator knows. Patches in rows
-/// and columns are the texels themselves. Memory: 16 to 64 bytes a patch, 4 in rows and columns, 32 a
-/// triangle.
+/// polygon stands between the two or lies in the same place, the texel says `ask`, and PatchLocator knows.
+/// Patches in rows and columns are the texels themselves. Memory: 16 to 64 bytes a patch, 4 in rows and
+/// columns, 32 a triangle.
 class HitMap {
  public:
   static constexpr std::int32_t ask = -1;  ///< a texel that does not know
