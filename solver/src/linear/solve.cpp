@@ -7,6 +7,7 @@
 #include "linear/methods.h"
 #include "linear/singular.h"
 #include "luxel/exchange_matrix.h"
+#include "ordered_sum.h"
 #include "plan/cost_model.h"
 
 namespace luxel {
@@ -46,7 +47,9 @@ void check(const TransportOperator& transport, const PatchField& reflectance, co
 SolveShape shape(const RadiositySystem& system, const SolveOptions& options) {
   SolveShape shape;
   shape.patches = static_cast<double>(system.size());
-  const Eigen::RowVectorXd mean = system.areas().transpose() * system.reflectance() / system.areas().sum();
+  const Eigen::RowVectorXd mean =
+      system.areas().transpose() * system.reflectance() /
+      ordered_sum({system.areas().data(), static_cast<std::size_t>(system.areas().size())});
   for (const auto& group : system.groups_of_equal_reflectance()) {
     shape.columns.push_back(static_cast<int>(group.size()));
     shape.mean_reflectance = std::max(shape.mean_reflectance, mean[group.front()]);

@@ -5,6 +5,7 @@
 
 #include "operator_error/coarse_exchange.h"
 #include "operator_error/mean_square.h"
+#include "ordered_sum.h"
 #include "sampling/owen_sobol.h"
 #include "stage_progress.h"
 #include "transport/gather/packets.h"
@@ -25,7 +26,7 @@ Eigen::RowVectorXd mean_squares(const PatchField& field, const std::vector<doubl
   const Eigen::Map<const Eigen::RowVectorXd> weights(areas.data(), static_cast<Eigen::Index>(areas.size()));
   Eigen::RowVectorXd means(field.cols());
   for (Eigen::Index c = 0; c < field.cols(); ++c) {
-    means[c] = weights.dot(field.col(c).cwiseAbs2()) / weights.sum();
+    means[c] = weights.dot(field.col(c).cwiseAbs2()) / ordered_sum(areas);
   }
   return means;
 }

@@ -11,6 +11,7 @@
 #include "form_factors/sky_box.h"
 #include "form_factors/visibility_choice.h"
 #include "luxel/plan.h"
+#include "ordered_sum.h"
 #include "plan/cost_model.h"
 
 namespace luxel {
@@ -139,7 +140,8 @@ SolveShape shape(const SystemPlan& system, const PatchMesh& part, const PatchFie
   std::vector<int> firsts;
   for (const int c : system.channels.solved) {
     shape.largest_reflectance = std::max(shape.largest_reflectance, rho.col(c).maxCoeff());
-    shape.mean_reflectance = std::max(shape.mean_reflectance, areas.dot(rho.col(c)) / areas.sum());
+    shape.mean_reflectance =
+        std::max(shape.mean_reflectance, areas.dot(rho.col(c)) / ordered_sum(part.areas));
     const auto same =
         std::find_if(firsts.begin(), firsts.end(), [&](int f) { return rho.col(f) == rho.col(c); });
     if (same == firsts.end()) {

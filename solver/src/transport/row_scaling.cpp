@@ -5,6 +5,7 @@
 
 #include "luxel/input_error.h"
 #include "luxel/vector.h"
+#include "ordered_sum.h"
 
 namespace luxel {
 
@@ -95,7 +96,8 @@ RowScaling scale_rows(const SymmetricProduct& product, std::span<const double> a
     return mask.cwiseProduct(sums.cwiseQuotient(a) - Vector::Ones(size)).cwiseAbs();
   };
   const auto potential = [&](const Vector& sums, const Vector& logarithms) {
-    return 0.5 * sums.sum() - a.cwiseProduct(mask).dot(logarithms);
+    return 0.5 * ordered_sum({sums.data(), static_cast<std::size_t>(sums.size())}) -
+           a.cwiseProduct(mask).dot(logarithms);
   };
 
   RowScaling result;

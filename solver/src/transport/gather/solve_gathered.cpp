@@ -6,6 +6,7 @@
 
 #include "luxel/gather_operator.h"
 #include "luxel/input_error.h"
+#include "ordered_sum.h"
 #include "transport/gather/final_gather.h"
 #include "transport/gather/gathered_light.h"
 #include "transport/gather/rays_needed.h"
@@ -27,7 +28,7 @@ constexpr int least_directions = 6;
 SolveOptions iteration(const PatchMesh& mesh, const PatchField& reflectance, SolveOptions solving) {
   if (solving.method != Method::automatic) return solving;
   const Eigen::Map<const Eigen::RowVectorXd> areas(mesh.areas.data(), mesh.size());
-  const double brightest = mesh.size() == 0 ? 0 : (areas * reflectance).maxCoeff() / areas.sum();
+  const double brightest = mesh.size() == 0 ? 0 : (areas * reflectance).maxCoeff() / ordered_sum(mesh.areas);
   solving.method = brightest > dark ? Method::gmres : Method::neumann;
   const double field = sizeof(double) * static_cast<double>(std::max<Eigen::Index>(1, reflectance.size()));
   solving.restart = std::clamp(static_cast<int>(bytes_for_directions / field), least_directions,

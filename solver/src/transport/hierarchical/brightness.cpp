@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "luxel/solve.h"
+#include "ordered_sum.h"
 
 namespace luxel {
 
@@ -89,10 +90,11 @@ Brightness guessed_brightness(const PatchHierarchy& hierarchy, const PatchField&
                               const PatchField& emission) {
   const Eigen::Map<const Eigen::RowVectorXd> areas(hierarchy.mesh->areas.data(), hierarchy.mesh->size());
   const Eigen::RowVectorXd emitted = areas * emission, reflected = areas * reflectance;
+  const double area = ordered_sum(hierarchy.mesh->areas);
   // the integrating sphere
   Eigen::RowVectorXd irradiance(emitted.size());
   for (Eigen::Index c = 0; c < emitted.size(); ++c) {
-    irradiance[c] = emitted[c] / (areas.sum() - std::min(reflected[c], most_reflected * areas.sum()));
+    irradiance[c] = emitted[c] / (area - std::min(reflected[c], most_reflected * area));
   }
   const PatchField radiosity = emission + reflectance * irradiance.asDiagonal();
   return brightest(hierarchy, radiosity, irradiance);
@@ -114,7 +116,7 @@ Brightness solved_brightness(const PatchHierarchy& hierarchy, const NodeInterpol
   const RadiositySolution solution = solve(coarse, rho, source.cwiseMax(0), options);
   const Eigen::Map<const Eigen::VectorXd> areas(coarse.areas().data(), coarse.size());
   Eigen::RowVectorXd irradiance =
-      (areas.transpose() * solution.irradiance.cwiseAbs2() / areas.sum()).cwiseSqrt();
+      (areas.transpose() * solution.irradiance.cwiseAbs2() / ordered_sum(coarse.areas())).cwiseSqrt();
   PatchField radiosity(interpolation.patches(), columns);
   interpolation.to_patches(solution.radiosity.data(), radiosity.data(), columns);
   return brightest(hierarchy, radiosity, irradiance);
