@@ -99,8 +99,8 @@ def plot(folder):
         if ".csv" in name or float(error) == 0:
             continue
         curves.setdefault((name.replace("_", " "), int(patches), operator), []).append((float(cpu), float(error)))
-    script = ["set terminal pngcairo size 1000,620 font 'sans,11'", f"set output '{folder / 'scale.png'}'",
-              "set logscale xy", "set grid", "set key below maxcols 2",
+    script = ["set terminal pngcairo size 1180,560 font 'sans,11'", f"set output '{folder / 'scale.png'}'",
+              "set logscale xy", "set grid", "set key outside right center",
               "set xlabel 'CPU seconds of the whole run, error bar included'",
               "set ylabel 'relative RMS error of irradiance'", "set format y '10^{%L}'"]
     styles = {"dense": 7, "gather": 5, "hierarchical": 9}
