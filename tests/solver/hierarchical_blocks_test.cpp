@@ -71,6 +71,32 @@ TEST(StoreBlock, TakesTheSlopeOfVisibilityOutToTheNodes) {
   }
 }
 
+// The parts of a triangle that lie nearest to its nodes have other areas than the nodes have weights.
+TEST(StoreBlock, KeepsTheShareThatRaysFoundBetweenPatchesThatFillNoRectangle) {
+  const PatchMesh mesh = hand_made_mesh(
+      {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0.2, 0.9, 0), Vec3(0, 0, 2), Vec3(0.2, 0.9, 2), Vec3(1, 0, 2)},
+      {{0, 1, 2, -1}, {3, 4, 5, -1}});
+  const PatchHierarchy hierarchy = patch_hierarchy(mesh, one_enclosure(mesh));
+  const BlockEnd r = block_end(hierarchy, hierarchy.cluster_count(), false),
+                 s = block_end(hierarchy, hierarchy.cluster_count() + 1, false);
+  BlockKernel kernel;
+  kernel.values.fill(1);
+  // twice as many rays start near the first node as near each other one, and these alone arrive
+  RayCount rays;
+  for (int k = 0; k < 16; ++k) {
+    rays.cast[k] = k < 4 ? 8 : 4;
+    rays.arrived[k] = k < 4 ? 8 : 0;
+    rays.all += rays.cast[k];
+    rays.visible += rays.arrived[k];
+  }
+  BlockList list;
+
+  store_block(r, s, kernel, rays, {1e-9, 1, 1}, list);
+
+  ASSERT_EQ(list.scalars.size(), 1);
+  EXPECT_NEAR(list.scalars[0].value, 32.0 / 80, 1e-6);  // float
+}
+
 TEST(CornerError, IsTheKernelOfACornerThatAloneSeesOverTheHorizon) {
   // the plane of a small patch, 3 x + 3 y = 5.6, leaves the corner (1, 1, 0) of the floor and none of its
   // nodes

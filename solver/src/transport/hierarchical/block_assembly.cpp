@@ -26,7 +26,7 @@ constexpr std::size_t task_count = 4096;
 // two single patches get.
 constexpr int first_rays = 16;
 constexpr int more_rays = 32;
-constexpr int most_rays = 256;
+constexpr int most_rays = 4096;
 
 // What comes within so many of a flat end's radii stands on it.
 constexpr double standing = 0.1;

@@ -20,7 +20,7 @@ namespace {
 constexpr int packet = 16;
 
 // Of two single patches that are close.
-constexpr int most_pairs_of_points = 1024;
+constexpr int most_pairs_of_points = 4096;
 
 // Rays start and end this far in front of their patches: as in ray_visibility.cpp.
 constexpr double surface_offset = 4e-7;

@@ -37,7 +37,7 @@ class BlockRays {
   /// Draws rays up to `wanted` in all, a multiple of 16.
   void cast(const BlockEnd& r, const BlockEnd& s, int wanted, RayCount& count) const;
   /// The share of what two single patches exchange that nothing hides, by rays that weigh what they carry:
-  /// doubled until the share's standard error is `allowed`, 1024 pairs of points at most.
+  /// doubled until the share's standard error is `allowed`, 4096 pairs of points at most.
   double visible_share(const BlockEnd& r, const BlockEnd& s, double allowed, int& rays) const;
   /// Sixteen rays between the outermost points of both ends, where a shadow shows first.
   void cast_between_corners(const BlockEnd& r, const BlockEnd& s, RayCount& count) const;

@@ -32,6 +32,23 @@ void extend_to_nodes(std::array<double, 16>& shares, int first, int second) {
   }
 }
 
+// Scales shares so that the nodes' weights give the mean that the rays found, which are spread by area: where
+// an end is no rectangle, the parts around its nodes have other areas than the nodes have weights.
+void keep_mean(std::array<double, 16>& shares, const BlockEnd& r, const BlockEnd& s,
+               const BlockKernel& kernel, const RayCount& rays) {
+  double cast = 0, arrived = 0, all = 0, visible = 0;
+  for (int k = 0; k < 16; ++k) {
+    cast += kernel.values[k] * rays.cast[k];
+    arrived += kernel.values[k] * rays.arrived[k];
+    const double weight = r.weights[k >> 2] * s.weights[k & 3] * kernel.values[k];
+    all += weight;
+    visible += weight * shares[k];
+  }
+  if (!(visible > 0 && cast > 0)) return;
+  const double scale = arrived / cast * all / visible;
+  for (double& share : shares) share *= scale;
+}
+
 }  // namespace
 
 void store_block(const BlockEnd& r, const BlockEnd& s, const BlockKernel& kernel, const RayCount& rays,
@@ -41,6 +58,7 @@ void store_block(const BlockEnd& r, const BlockEnd& s, const BlockKernel& kernel
     std::array<double, 16> shares;
     for (int k = 0; k < 16; ++k) shares[k] = rays.share(k);
     if (!rays.unanimous()) {
+      keep_mean(shares, r, s, kernel, rays);
       if (!r.single) extend_to_nodes(shares, 4, 8);
       if (!s.single) extend_to_nodes(shares, 1, 2);
     }
