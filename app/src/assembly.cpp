@@ -20,10 +20,6 @@ namespace {
 // second), and one for so many pairs of patches in larger scenes.
 constexpr std::int64_t least_share_rays = 2'000'000, pairs_a_share_ray = 16;
 
-// An error bar whose low end is a smaller share of its high end has seen little, and noise may have made the
-// low end: runs are not called short for its sake.
-constexpr double narrow_bar = 0.25;
-
 // Where rows of a closed scene turn out worse than asked, all is computed again for half the accuracy, so
 // often.
 constexpr int most_tries = 2;
@@ -170,13 +166,9 @@ Assembly assemble(const SceneOptions& scene, const OperatorOptions& options, con
   return assembly;
 }
 
-bool surely_above(const std::optional<OperatorError>& error, double accuracy) {
-  return error && error->low > std::max(accuracy, narrow_bar * error->high);
-}
-
 bool accuracy_reached(const Assembly& assembly, bool largest_too) {
   const double accuracy = assembly.record.options.accuracy;
-  if (surely_above(assembly.operator_error, accuracy)) return false;
+  if (assembly.operator_error && assembly.operator_error->surely_above(accuracy)) return false;
   if (assembly.record.closure.unclosed >= 0) return false;
   return assembly.rows.certain_rms <= accuracy && (!largest_too || assembly.rows.certain_max <= 2 * accuracy);
 }

@@ -47,10 +47,6 @@ RowErrors row_errors(const std::vector<double>& row_sums, const std::vector<doub
 void report_operator(const Assembly& assembly, std::string_view kind, std::size_t bytes,
                      const Seconds& seconds, Report& report);
 
-/// Whether an error bar tells that the accuracy was missed: its low end is above it, and so near the high end
-/// that noise did not make it.
-bool surely_above(const std::optional<OperatorError>& error, double accuracy);
-
 /// Whether the operator is as accurate as asked, as far as rays can tell: the low end of its error's interval
 /// and the RMS error of the raw rows <= accuracy, and in `factors` the largest <= 2 accuracy.
 bool accuracy_reached(const Assembly& assembly, bool largest_too);

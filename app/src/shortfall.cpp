@@ -40,7 +40,7 @@ std::string accuracy_shortfall(const Assembly& assembly, bool largest_too) {
   if (accuracy_reached(assembly, largest_too)) return {};
   const double accuracy = assembly.record.options.accuracy;
   std::vector<std::string> parts;
-  if (surely_above(assembly.operator_error, accuracy)) {
+  if (assembly.operator_error && assembly.operator_error->surely_above(accuracy)) {
     parts.push_back(fmt::format("the operator's error is {:.2g} ({:.2g} to {:.2g})",
                                 assembly.operator_error->estimate, assembly.operator_error->low,
                                 assembly.operator_error->high));

@@ -132,5 +132,15 @@ TEST(OperatorError, RefusesFieldsOfAnotherMesh) {
       std::invalid_argument);
 }
 
+// A dense run that was right to 2e-5 had the second interval.
+TEST(OperatorError, IsSurelyAboveAnAccuracyWhereTheIntervalIsNarrow) {
+  const OperatorError narrow{.estimate = 0.0056, .low = 0.0040, .high = 0.0071};
+  const OperatorError wide{.estimate = 0.0016, .low = 0.00044, .high = 0.0030};
+
+  EXPECT_TRUE(narrow.surely_above(0.0039));
+  EXPECT_FALSE(narrow.surely_above(0.0041));
+  EXPECT_FALSE(wide.surely_above(1e-4));
+}
+
 }  // namespace
 }  // namespace luxel

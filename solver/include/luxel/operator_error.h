@@ -25,6 +25,10 @@ struct OperatorError {
   std::int64_t rays = 0;     ///< cast for them
   /// Of the probes: how far the row sums given are from 1 less the share of rays that met no patch.
   double row_sum_error_max = 0, row_sum_error_rms = 0;
+
+  /// Whether this tells that an accuracy was missed: low is above it, and above a quarter of high. A lower
+  /// end is that of an interval that has seen little, and noise may have made it.
+  bool surely_above(double accuracy) const { return low > accuracy && low > 0.25 * high; }
 };
 
 /// Estimates the error that the transport operator F_s of a solution causes, without knowing it. With e = H -
